@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include "accel/ray.h"
+
+namespace rayengine {
+
+/// An axis-aligned box; empty until something is added. Sides may be infinite.
+struct Box {
+  glm::dvec3 lower{infinity};
+  glm::dvec3 upper{-infinity};
+
+  bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
+  bool finite() const { return !empty() && extent() < infinity; }
+  void add(const glm::dvec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
+  void add(const Box& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
+  glm::dvec3 center() const { return 0.5 * (lower + upper); }
+  glm::dvec3 size() const { return upper - lower; }
+
+  /// The largest absolute coordinate.
+  double extent() const {
+    const glm::dvec3 e = glm::max(glm::abs(lower), glm::abs(upper));
+    return std::max({e.x, e.y, e.z});
+  }
+};
+
+}  // namespace rayengine

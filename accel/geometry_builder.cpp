@@ -1,0 +1,149 @@
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "accel/geometry.h"
+#include "accel/tracer.h"
+
+namespace rayengine {
+namespace {
+
+bool is_finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool is_float(const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)) == p; }
+
+void check(const Mesh& mesh) {
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+    throw Error("a mesh has " + std::to_string(mesh.normals.size()) + " normals for " +
+                std::to_string(mesh.positions.size()) + " vertices: give one each, or none");
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    if (!is_finite(mesh.positions[i])) throw Error("vertex " + std::to_string(i) + " of a mesh is not finite");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.triangles[i][k] >= mesh.positions.size())
+        throw Error("triangle " + std::to_string(i) + " of a mesh names vertex " + std::to_string(mesh.triangles[i][k]) +
+                    ", but there are " + std::to_string(mesh.positions.size()));
+}
+
+glm::vec3 world_normal(const WorldToObject& map, const glm::vec3& n) {
+  const glm::dvec3 turned = map.normal_to_world(glm::dvec3(n));
+  const double length = glm::length(turned);
+  return length > 0 && std::isfinite(length) ? glm::vec3(turned / length) : glm::vec3(0);
+}
+
+std::array<double, 2> default_clip(QuadricType type) {
+  switch (type) {
+    case QuadricType::cylinder:
+    case QuadricType::cone:
+    case QuadricType::paraboloid: return {0, 1};
+    case QuadricType::hyperboloid1: return {-1, 1};
+    case QuadricType::hyperboloid2: return {-2, 2};
+    default: return {-infinity, infinity};
+  }
+}
+
+bool can_be_capped(QuadricType type) {
+  return type >= QuadricType::cylinder && type <= QuadricType::hyperboloid2;
+}
+
+/// Scales a matrix by a power of two, which moves no root, so that its largest entry lies in [1, 2).
+QuadricMatrix normalised(QuadricMatrix matrix) {
+  double largest = 0;
+  for (double a : matrix) {
+    if (!std::isfinite(a)) throw Error("a quadric's matrix is not finite");
+    largest = std::max(largest, std::abs(a));
+  }
+  if (largest > 0)
+    for (double& a : matrix) a = std::ldexp(a, -std::ilogb(largest));
+  return matrix;
+}
+
+void check(const QuadricShape& shape, const std::array<double, 2>& clip) {
+  const std::string name(to_string(shape.type));
+  if (shape.capped && !can_be_capped(shape.type)) throw Error("a " + name + " cannot be capped");
+  if (!(clip[0] < clip[1]) && shape.type != QuadricType::plane && shape.type != QuadricType::disk)
+    throw Error("the clip of a " + name + " is empty: its first number must be the smaller");
+  if (shape.capped && !(std::isfinite(clip[0]) && std::isfinite(clip[1])))
+    throw Error("the clip of a capped " + name + " must be finite");
+  if (shape.type == QuadricType::general && !shape.matrix) throw Error("a quadric needs the ten numbers of its matrix");
+  if (shape.type != QuadricType::general && shape.matrix) throw Error("only a quadric takes a matrix, not a " + name);
+  if (shape.box && (shape.box->empty() || shape.capped)) throw Error("the box of a " + name + " is empty, or closed by caps");
+}
+
+}  // namespace
+
+std::uint32_t GeometryBuilder::begin(Object::Kind kind, std::size_t first, std::uint32_t material) {
+  geometry_.objects.push_back({kind, static_cast<std::uint32_t>(first), primitives_, material});
+  return static_cast<std::uint32_t>(geometry_.objects.size() - 1);
+}
+
+std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, const Affine& to_world) {
+  check(mesh);
+  const WorldToObject to_object = inverse(to_world);
+  const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
+  const std::uint32_t object = begin(Object::Kind::mesh, geometry_.triangles.size(), material);
+  for (const glm::dvec3& p : mesh.positions) {
+    const glm::dvec3 world = to_world.point(p);
+    exact_ = exact_ && is_float(world);
+    geometry_.vertices.emplace_back(world);
+    geometry_.exact_vertices.push_back(world);
+    geometry_.bounds.add(world);
+  }
+  if (!mesh.normals.empty()) {
+    geometry_.normals.resize(base);
+    for (const glm::vec3& n : mesh.normals) geometry_.normals.push_back(world_normal(to_object, n));
+  }
+  for (const glm::uvec3& t : mesh.triangles) geometry_.triangles.push_back(t + base);
+  geometry_.triangle_object.resize(geometry_.triangles.size(), object);
+  primitives_ += static_cast<std::uint32_t>(mesh.triangles.size());
+  return object;
+}
+
+std::uint32_t GeometryBuilder::add(const QuadricShape& shape, std::uint32_t material, const Affine& to_world) {
+  const std::array<double, 2> clip = shape.clip.value_or(default_clip(shape.type));
+  check(shape, clip);
+  Quadric q{inverse(to_world), clip[0], clip[1], no_id, no_id, shape.type, shape.capped};
+  if (shape.type == QuadricType::general || shape.box) {
+    // A box turns any type into the general form of the same surface.
+    GeneralForm form{normalised(shape.matrix.value_or(unit_matrix(shape.type))),
+                     shape.box.value_or(Box{glm::dvec3(-infinity), glm::dvec3(infinity)})};
+    form.box.lower.z = std::max(form.box.lower.z, clip[0]);
+    form.box.upper.z = std::min(form.box.upper.z, clip[1]);
+    q.type = QuadricType::general;
+    q.form = static_cast<std::uint32_t>(geometry_.forms.size());
+    geometry_.forms.push_back(form);
+  }
+  q.object = begin(Object::Kind::quadric, geometry_.quadrics.size(), material);
+  geometry_.quadrics.push_back(q);
+  geometry_.bounds.add(bounds(geometry_, q));
+  primitives_ += primitive_count(q);
+  return q.object;
+}
+
+std::uint32_t GeometryBuilder::group_index(const std::shared_ptr<const Geometry>& group) {
+  for (std::size_t i = 0; i < geometry_.groups.size(); ++i)
+    if (geometry_.groups[i] == group) return static_cast<std::uint32_t>(i);
+  geometry_.groups.push_back(group);
+  return static_cast<std::uint32_t>(geometry_.groups.size() - 1);
+}
+
+std::uint32_t GeometryBuilder::add(std::shared_ptr<const Geometry> group, const Affine& to_world, std::uint32_t material) {
+  const WorldToObject to_group = inverse(to_world);
+  const std::uint32_t object = begin(Object::Kind::instance, geometry_.instances.size(), material);
+  const Instance instance{to_group, group_index(group), object, 0};
+  geometry_.bounds.add(bounds(geometry_, instance));
+  geometry_.instances.push_back(instance);
+  primitives_ += group->primitive_count();
+  return object;
+}
+
+std::shared_ptr<const Geometry> GeometryBuilder::build() {
+  if (exact_) geometry_.exact_vertices.clear();
+  if (!geometry_.normals.empty()) geometry_.normals.resize(geometry_.vertices.size());
+  auto result = std::make_shared<Geometry>(std::move(geometry_));
+  for (auto shrink = [](auto&... v) { (v.shrink_to_fit(), ...); }; false;) shrink(result->vertices);
+  *this = {};
+  return result;
+}
+
+}  // namespace rayengine

@@ -1,0 +1,56 @@
+// Ray against quadric, in the quadric's object space. Source of the method: Haines, Guenther, Akenine-Moeller, "Precision
+// Improvements for Ray/Sphere Intersection" (Ray Tracing Gems, ch. 7), taken from spheres to all quadrics.
+// No dot(), no normalize(): the order of operations is part of the result.
+
+// Moves the ray's origin to where the ray passes the object's centre, so that the coefficients are formed from small
+// numbers: p = o + s d. The second step corrects the rounding of the first.
+KERNEL void approach(VEC3 o, VEC3 d, OUT(VEC3) p, OUT(REAL) s) {
+  REAL dd = (d.x * d.x + d.y * d.y) + d.z * d.z;
+  REAL s1 = -((o.x * d.x + o.y * d.y) + o.z * d.z) / dd;
+  p = VEC3(o.x + s1 * d.x, o.y + s1 * d.y, o.z + s1 * d.z);
+  REAL s2 = -((p.x * d.x + p.y * d.y) + p.z * d.z) / dd;
+  p = VEC3(p.x + s2 * d.x, p.y + s2 * d.y, p.z + s2 * d.z);
+  s = s1 + s2;
+}
+
+// Coefficients of a r^2 + 2 b r + c = 0 along p + r d for the forms A x^2 + E y^2 + H z^2 + 2 I z + J: all unit primitives.
+KERNEL void diagonal_coefficients(REAL A, REAL E, REAL H, REAL I, REAL J, VEC3 p, VEC3 d, OUT(REAL) a, OUT(REAL) b, OUT(REAL) c) {
+  a = (A * d.x * d.x + E * d.y * d.y) + H * d.z * d.z;
+  b = ((A * p.x * d.x + E * p.y * d.y) + H * p.z * d.z) + I * d.z;
+  c = (((A * p.x * p.x + E * p.y * p.y) + H * p.z * p.z) + 2 * I * p.z) + J;
+}
+
+// The same for all ten coefficients, by Q applied to the direction and to the point.
+KERNEL void general_coefficients(REAL A, REAL B, REAL C, REAL D, REAL E, REAL F, REAL G, REAL H, REAL I, REAL J, VEC3 p, VEC3 d,
+                                 OUT(REAL) a, OUT(REAL) b, OUT(REAL) c) {
+  REAL qx = (A * d.x + B * d.y) + C * d.z;
+  REAL qy = (B * d.x + E * d.y) + F * d.z;
+  REAL qz = (C * d.x + F * d.y) + H * d.z;
+  REAL qw = (D * d.x + G * d.y) + I * d.z;
+  a = (qx * d.x + qy * d.y) + qz * d.z;
+  b = ((qx * p.x + qy * p.y) + qz * p.z) + qw;
+  REAL gx = ((A * p.x + B * p.y) + C * p.z) + D;
+  REAL gy = ((B * p.x + E * p.y) + F * p.z) + G;
+  REAL gz = ((C * p.x + F * p.y) + H * p.z) + I;
+  REAL gw = ((D * p.x + G * p.y) + I * p.z) + J;
+  c = ((gx * p.x + gy * p.y) + gz * p.z) + gw;
+}
+
+// Roots of a r^2 + 2 b r + c = 0 in order, each from the expression that does not cancel; REAL_MAX where there is none.
+// A double root is none: tangent rays miss. NaN coefficients give no roots.
+KERNEL void roots(REAL a, REAL b, REAL c, OUT(REAL) near, OUT(REAL) far) {
+  REAL discriminant = b * b - a * c;
+  BOOL real = discriminant > 0;
+  REAL h = root(pick(real, discriminant, a - a));
+  REAL q = -(b + pick(b < 0, -h, h));
+  REAL none = REAL_MAX;
+  REAL r0 = pick(both(real, a != 0), q / a, none);
+  REAL r1 = pick(real, c / q, none);
+  near = smaller(r0, r1);
+  far = larger(r0, r1);
+}
+
+// The plane z = at along p + r d; REAL_MAX when the ray runs in parallel.
+KERNEL REAL plane_root(REAL at, VEC3 p, VEC3 d) {
+  return pick(d.z != 0, (at - p.z) / d.z, REAL_MAX);
+}

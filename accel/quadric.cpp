@@ -1,0 +1,115 @@
+#include "accel/quadric.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace rayengine {
+namespace {
+
+constexpr std::array<std::string_view, quadric_type_count> type_names{
+    "sphere", "cylinder", "cone", "paraboloid", "hyperboloid1", "hyperboloid2", "saddle", "plane", "disk", "quadric"};
+
+/// A surface of revolution between two clip planes lies in the hull of these two discs.
+struct Discs {
+  double z0, r0, z1, r1;
+};
+
+double radius(QuadricType type, double z) {
+  switch (type) {
+    case QuadricType::cylinder: return 1;
+    case QuadricType::cone: return std::abs(z);
+    case QuadricType::paraboloid: return std::sqrt(std::max(z, 0.0));
+    case QuadricType::hyperboloid1: return std::sqrt(1 + z * z);
+    case QuadricType::hyperboloid2: return std::sqrt(std::max(z * z - 1, 0.0));
+    default: return infinity;
+  }
+}
+
+Discs discs(const Quadric& q) {
+  const double r0 = radius(q.type, q.zmin), r1 = radius(q.type, q.zmax), widest = std::max(r0, r1);
+  // Where the radius is a convex function of z, every section lies below the chord between the ends.
+  const bool convex = q.type != QuadricType::paraboloid && q.type != QuadricType::hyperboloid2;
+  return {q.zmin, convex ? r0 : widest, q.zmax, convex ? r1 : widest};
+}
+
+/// Infinity times zero is taken as zero here: an axis that does not matter adds nothing.
+double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+void add_disc(Box& box, const Affine& map, double z, double r) {
+  const auto& m = map.linear;
+  for (int i = 0; i < 3; ++i) {
+    const double center = map.origin[i] + product(m[2][i], z);
+    const double reach = product(std::hypot(m[0][i], m[1][i]), r);
+    box.lower[i] = std::min(box.lower[i], center - reach);
+    box.upper[i] = std::max(box.upper[i], center + reach);
+  }
+}
+
+Box transformed(const Box& object_box, const Affine& map) {
+  Box result{map.origin, map.origin};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      const double a = product(map.linear[column][row], object_box.lower[column]);
+      const double b = product(map.linear[column][row], object_box.upper[column]);
+      result.lower[row] += std::min(a, b);
+      result.upper[row] += std::max(a, b);
+    }
+  return result;
+}
+
+Box sphere_bounds(const Quadric& q, const Affine& map) {
+  Box box;
+  glm::dvec3 reach;
+  for (int i = 0; i < 3; ++i) reach[i] = std::hypot(std::hypot(map.linear[0][i], map.linear[1][i]), map.linear[2][i]);
+  box.add(map.origin - reach);
+  box.add(map.origin + reach);
+  if (q.zmin <= -1 && q.zmax >= 1) return box;
+  const Box clipped = transformed({{-1, -1, std::max(q.zmin, -1.0)}, {1, 1, std::min(q.zmax, 1.0)}}, map);
+  return {glm::max(box.lower, clipped.lower), glm::min(box.upper, clipped.upper)};
+}
+
+}  // namespace
+
+std::string_view to_string(QuadricType type) { return type_names[static_cast<std::size_t>(type)]; }
+
+std::optional<QuadricType> parse_quadric_type(std::string_view name) {
+  const auto found = std::find(type_names.begin(), type_names.end(), name);
+  if (found == type_names.end()) return std::nullopt;
+  return static_cast<QuadricType>(found - type_names.begin());
+}
+
+QuadricMatrix unit_matrix(QuadricType type) {
+  switch (type) {  //                          A  B  C  D  E  F  G  H   I     J
+    case QuadricType::sphere: return          {1, 0, 0, 0, 1, 0, 0, 1, 0, -1};
+    case QuadricType::cylinder: return        {1, 0, 0, 0, 1, 0, 0, 0, 0, -1};
+    case QuadricType::cone: return            {1, 0, 0, 0, 1, 0, 0, -1, 0, 0};
+    case QuadricType::paraboloid: return      {1, 0, 0, 0, 1, 0, 0, 0, -0.5, 0};
+    case QuadricType::hyperboloid1: return    {1, 0, 0, 0, 1, 0, 0, -1, 0, -1};
+    case QuadricType::hyperboloid2: return    {1, 0, 0, 0, 1, 0, 0, -1, 0, 1};  // signed so that the inside is negative
+    case QuadricType::saddle: return          {1, 0, 0, 0, -1, 0, 0, 0, -0.5, 0};
+    case QuadricType::plane:
+    case QuadricType::disk: return            {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0};
+    case QuadricType::general: break;
+  }
+  return {};
+}
+
+Box bounds(const Quadric& q, const GeneralForm* form) {
+  const Affine map = object_to_world(q.to_object);
+  switch (q.type) {
+    case QuadricType::sphere: return sphere_bounds(q, map);
+    case QuadricType::general: return transformed(form->box, map);
+    case QuadricType::saddle: return transformed({{-1, -1, std::max(q.zmin, -1.0)}, {1, 1, std::min(q.zmax, 1.0)}}, map);
+    case QuadricType::plane: return transformed({{-infinity, -infinity, 0}, {infinity, infinity, 0}}, map);
+    default: break;
+  }
+  Box box;
+  const Discs d = q.type == QuadricType::disk ? Discs{0, 1, 0, 1} : discs(q);
+  add_disc(box, map, d.z0, d.r0);
+  add_disc(box, map, d.z1, d.r1);
+  return box;
+}
+
+}  // namespace rayengine

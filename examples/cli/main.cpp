@@ -1,0 +1,2 @@
+#include "engine/load/load.h"
+int main() { return 0; }
