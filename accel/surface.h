@@ -1,0 +1,25 @@
+#pragma once
+
+#include "accel/geometry.h"
+#include "accel/ray.h"
+
+namespace rayengine {
+
+/// A hit worked out in double on the primitive that its ids name: what shading needs, and how wrong it can be.
+struct Surface {
+  glm::dvec3 position{0};
+  glm::dvec3 normal{0};          ///< unit geometric normal, oriented as Hit::normal
+  glm::dvec3 shading_normal{0};  ///< unit; interpolated where the mesh has normals
+  double error = 0;              ///< bound on the distance, along the normal, between `position` and the surface
+  double magnitude = 0;          ///< largest absolute coordinate of `position` and of the triangle's vertices
+  std::uint32_t material = 0;
+  bool is_triangle = false;
+};
+
+/// Needs hit.hit(), and the geometry that was hit.
+Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);
+
+/// The same hit with t, barycentrics, normal and the bound on t worked out in double for the primitive that it names.
+Hit refine(const Geometry& geometry, const Ray& ray, const Hit& hit);
+
+}  // namespace rayengine
