@@ -1,0 +1,5 @@
+include(CMakeFindDependencyMacro)
+find_dependency(embree 3)
+find_dependency(TBB)
+find_dependency(glm)
+include(${CMAKE_CURRENT_LIST_DIR}/RayEngineTargets.cmake)

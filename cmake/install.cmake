@@ -1,0 +1,33 @@
+# What `cmake --install` gives: the core's headers and library, its CMake and pkg-config packages, the command, the scenes.
+include(CMakePackageConfigHelpers)
+set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/rayengine)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/RayEngine)
+
+install(DIRECTORY accel engine DESTINATION ${header_folder} FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl"
+  PATTERN engine/load EXCLUDE PATTERN engine/rayengine.h EXCLUDE)
+install(FILES engine/rayengine.h DESTINATION ${header_folder})
+
+# Here headers include each other from the top folder. In a host's include path "engine/..." could be the host's own.
+install(CODE "set(headers \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${header_folder}\")")
+install(CODE [[
+  file(GLOB_RECURSE headers "${headers}/*.h")
+  foreach(header ${headers})
+    file(READ "${header}" text)
+    string(REGEX REPLACE "#include \"(accel|engine)/" "#include \"rayengine/\\1/" text "${text}")
+    file(WRITE "${header}" "${text}")
+  endforeach()
+]])
+
+install(TARGETS rayengine EXPORT RayEngineTargets)
+install(EXPORT RayEngineTargets NAMESPACE RayEngine:: DESTINATION ${package_folder})
+write_basic_package_version_file(RayEngineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES cmake/RayEngineConfig.cmake ${PROJECT_BINARY_DIR}/RayEngineConfigVersion.cmake DESTINATION ${package_folder})
+
+set(pkgconfig_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH pkgconfig_to_prefix /${pkgconfig_folder} /)
+configure_file(cmake/rayengine.pc.in rayengine.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/rayengine.pc DESTINATION ${pkgconfig_folder})
+
+if(RAYENGINE_TOOLS)
+  install(TARGETS rayengine_cli)
+endif()

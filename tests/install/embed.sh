@@ -1,0 +1,40 @@
+#!/bin/bash
+# Installs the build tree into a folder of its own, builds examples/embed against that as a host would, by CMake and by
+# pkg-config, and compares what it prints. Arguments: source folder, build folder, compiler, compiler flags.
+set -euo pipefail
+source=$1 build=$2 compiler=$3 flags=${4:-}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+prefix=$folder/prefix
+
+say_what() {
+  echo "== $1"
+}
+check() {
+  "$1" | diff "$source/tests/install/expected.txt" -
+  ! ldd "$1" | grep -E 'OpenImageIO|OpenMesh' || { echo "an embedding application inherits the above"; exit 1; }
+}
+
+say_what "install"
+cmake --install "$build" --prefix "$prefix" >"$folder/log" || { cat "$folder/log"; exit 1; }
+
+say_what "every installed header compiles by itself"
+find "$prefix/include" -name '*.h' | while read -r header; do
+  $compiler -std=c++20 $flags -Wall -Wextra -Werror -fsyntax-only -I"$prefix/include" -include "$header" -x c++ /dev/null
+done
+
+say_what "by CMake"
+cmake -S "$source/examples/embed" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" \
+  -DCMAKE_CXX_FLAGS="$flags" >"$folder/log" || { cat "$folder/log"; exit 1; }
+cmake --build "$folder/cmake"
+check "$folder/cmake/embed"
+
+say_what "by pkg-config"
+export PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name rayengine.pc)")
+$compiler -std=c++20 $flags -o "$folder/embed" "$source/examples/embed/main.cpp" $(pkg-config --cflags --libs rayengine)
+check "$folder/embed"
+
+if [[ -x $prefix/bin/rayengine ]]; then
+  say_what "the command"
+  "$prefix/bin/rayengine" --help >/dev/null
+fi
