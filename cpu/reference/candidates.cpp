@@ -1,0 +1,78 @@
+#include "cpu/reference/candidates.h"
+
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "cpu/reference/quadric.h"
+#include "cpu/reference/triangle.h"
+
+namespace rayengine::reference {
+namespace {
+
+int sign(quad x) { return x < 0 ? -1 : x > 0; }
+
+Fraction exact_t(const Ray& ray, const Candidate& c) {
+  const auto world = make_line<Exact>(ray);
+  return exact_t(c.instance ? transformed(world, c.instance->to_group) : world, *c.geometry, c.index);
+}
+
+/// The sign of candidate's t - bound.
+int compare_t(const Ray& ray, const Candidate& c, double bound) {
+  const quad difference = c.at.t - bound;
+  if (!c.is_triangle || std::isinf(bound) || size_of(difference) > c.at.error) return sign(difference);
+  const Fraction t = exact_t(ray, c);
+  return (t.numerator - Exact(bound) * t.denominator).sign() * t.denominator.sign();
+}
+
+Vector<quad> to_world(const Vector<quad>& n, const WorldToObject& map) { return glm::transpose(map.linear) * n; }
+
+glm::vec3 unit(const Vector<quad>& v) {
+  const quad largest = std::max({v.x < 0 ? -v.x : v.x, v.y < 0 ? -v.y : v.y, v.z < 0 ? -v.z : v.z});
+  const quad x = v.x / largest, y = v.y / largest, z = v.z / largest, length = sqrtq(x * x + y * y + z * z);
+  return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+}
+
+Vector<quad> normal_in_group(const LocalRay& ray, const Candidate& c) {
+  if (c.is_triangle) return normal(*c.geometry, c.index);
+  const Quadric& q = c.geometry->quadrics[c.index];
+  return to_world(normal(LocalRay(ray, q.to_object), *c.geometry, q, c.at), q.to_object);
+}
+
+}  // namespace
+
+bool in_interval(const Ray& ray, const Candidate& c) {
+  const bool representable = static_cast<double>(c.at.t) < infinity;
+  return representable && compare_t(ray, c, ray.tmin) > 0 && compare_t(ray, c, ray.tmax) <= 0;
+}
+
+int compare_t(const Ray& ray, const Candidate& a, const Candidate& b) {
+  const quad difference = a.at.t - b.at.t;
+  if (!a.is_triangle || !b.is_triangle || size_of(difference) > a.at.error + b.at.error) return sign(difference);
+  const Fraction s = exact_t(ray, a), t = exact_t(ray, b);
+  return (s.numerator * t.denominator - t.numerator * s.denominator).sign() * s.denominator.sign() *
+         t.denominator.sign();
+}
+
+bool before(const Ray& ray, const Candidate& a, const Candidate& b) {
+  const int order = compare_t(ray, a, b);
+  return order < 0 || (order == 0 && std::tie(a.object, a.primitive) < std::tie(b.object, b.primitive));
+}
+
+Hit describe(const Ray& ray, const Candidate& c) {
+  const LocalRay world(ray);
+  const std::optional<LocalRay> placed =
+      c.instance ? std::optional<LocalRay>(std::in_place, world, c.instance->to_group) : std::nullopt;
+  const LocalRay& local = placed ? *placed : world;
+  Hit hit{.t = static_cast<double>(c.at.t), .object = c.object, .primitive = c.primitive, .status = status_hit};
+  hit.error = static_cast<double>((c.at.error + 0x1p-53L * size_of(c.at.t)) * (1 + 0x1p-50L)) + 0x1p-1074;
+  const Vector<quad> n = normal_in_group(local, c);
+  hit.normal = unit(c.instance ? to_world(n, c.instance->to_group) : n);
+  if (!c.is_triangle) return hit;
+  const auto [u, v] = barycentrics(local, *c.geometry, c.index);
+  hit.u = static_cast<float>(u);
+  hit.v = static_cast<float>(v);
+  return hit;
+}
+
+}  // namespace rayengine::reference

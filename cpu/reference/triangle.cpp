@@ -1,0 +1,70 @@
+#include "cpu/reference/triangle.h"
+
+namespace rayengine::reference {
+namespace {
+
+/// Corners as seen from the origin of a ray.
+template <class T>
+struct Corners {
+  Vector<T> a, b, c;
+};
+
+template <class T>
+Corners<T> corners(const Vector<T>& from, const Geometry& geometry, std::uint32_t triangle) {
+  const glm::uvec3& index = geometry.triangles[triangle];
+  return {make_vector<T>(geometry.vertex(index.x)) - from, make_vector<T>(geometry.vertex(index.y)) - from,
+          make_vector<T>(geometry.vertex(index.z)) - from};
+}
+
+/// Six times the signed volumes opposite to the corners a, b and c, in this order.
+template <class T>
+std::array<T, 3> volumes(const Line<T>& ray, const Corners<T>& k) {
+  return {dot(ray.direction, cross(k.b, k.c)), dot(ray.direction, cross(k.c, k.a)),
+          dot(ray.direction, cross(k.a, k.b))};
+}
+
+/// t of the plane is the first over the second: a . n and d . n, as the three cross products add up to n.
+template <class T>
+std::array<T, 2> plane_t(const Line<T>& ray, const Corners<T>& k) {
+  const std::array<T, 3> v = volumes(ray, k);
+  return {dot(k.a, cross(k.b, k.c)), v[0] + v[1] + v[2]};
+}
+
+std::array<Estimate, 3> estimated_volumes(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
+  return estimate<3>(
+      ray, [&]<class T>(const Line<T>& line) { return volumes(line, corners(line.origin, geometry, triangle)); });
+}
+
+bool passes(const std::array<Estimate, 3>& v) {
+  const bool positive = v[0].value > 0 || v[1].value > 0 || v[2].value > 0;
+  const bool negative = v[0].value < 0 || v[1].value < 0 || v[2].value < 0;
+  return positive != negative;
+}
+
+}  // namespace
+
+std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
+  if (!passes(estimated_volumes(ray, geometry, triangle))) return std::nullopt;
+  const auto [n, d] = estimate<2>(
+      ray, [&]<class T>(const Line<T>& line) { return plane_t(line, corners(line.origin, geometry, triangle)); });
+  const quad t = n.value / d.value;
+  return Crossing{t, (n.error + size_of(t) * d.error) / size_of(d.value) + quad_rounding * size_of(t)};
+}
+
+Fraction exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle) {
+  const auto [n, d] = plane_t(ray, corners(ray.origin, geometry, triangle));
+  return {n, d};
+}
+
+std::array<double, 2> barycentrics(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
+  const auto [a, b, c] = estimated_volumes(ray, geometry, triangle);
+  const quad sum = a.value + b.value + c.value;
+  return {static_cast<double>(b.value / sum), static_cast<double>(c.value / sum)};
+}
+
+Vector<quad> normal(const Geometry& geometry, std::uint32_t triangle) {
+  const auto k = corners(Vector<quad>{0, 0, 0}, geometry, triangle);
+  return cross(k.b - k.a, k.c - k.a);
+}
+
+}  // namespace rayengine::reference

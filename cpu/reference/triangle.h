@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "accel/geometry.h"
+#include "cpu/reference/formulas.h"
+
+namespace rayengine::reference {
+
+/// The textbook test by signed volumes. The ray passes a closed triangle abc when the tetrahedra that its direction
+/// spans with the three edges, seen from the origin, have no two volumes of opposite sign and not all are zero, which
+/// they are for a triangle without area or one that is seen edge on. Signs are exact.
+std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);
+
+/// t of the triangle's plane as a fraction without rounding.
+struct Fraction {
+  Exact numerator, denominator;
+};
+Fraction exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle);
+
+/// Barycentrics of the second and third vertex where the ray passes the triangle.
+std::array<double, 2> barycentrics(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);
+
+/// (b - a) x (c - a)
+Vector<quad> normal(const Geometry& geometry, std::uint32_t triangle);
+
+}  // namespace rayengine::reference
