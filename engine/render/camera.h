@@ -1,0 +1,24 @@
+#pragma once
+
+#include "accel/ray.h"
+#include "engine/scene/scene.h"
+
+namespace rayengine {
+
+/// A camera worked out for shooting rays: right-handed, with right = view x up. The vertical angle spans the image's
+/// height, so that pixels are square whatever the image's shape.
+class CameraFrame {
+ public:
+  /// Throws Error when the camera looks nowhere: no distance to `at`, `up` along the view, or an angle out of (0, 180).
+  explicit CameraFrame(const Camera& camera);
+
+  /// The ray through pixel coordinates (x, y), in pixels from the upper left corner; its direction has unit length.
+  Ray ray(double x, double y) const;
+
+ private:
+  glm::dvec3 from_, center_;  ///< `center_` is the direction through the image's middle
+  glm::dvec3 right_, up_;     ///< a pixel's step to the right and up, at unit distance
+  glm::dvec2 middle_;         ///< of the image, in pixels
+};
+
+}  // namespace rayengine

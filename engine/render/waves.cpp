@@ -1,0 +1,144 @@
+#include "engine/render/waves.h"
+
+#include <algorithm>
+
+#include "engine/render/optics.h"
+
+namespace rayengine {
+namespace {
+
+/// Rays that bring less than this share of what they see are not traced: half a step of an 8-bit image, four times
+/// over.
+constexpr float least_weight = 1.0f / 2048;
+
+/// Places in the counts of rays.
+enum Kind { primary_ray, shadow_ray, reflected_ray, refracted_ray };
+
+bool matters(const glm::vec3& weight) { return std::max({weight.x, weight.y, weight.z}) >= least_weight; }
+
+glm::dvec3 facing(const glm::dvec3& normal, const glm::dvec3& direction) {
+  return glm::dot(normal, direction) > 0 ? -normal : normal;
+}
+
+/// Whether both directions lie on the same side of the plane.
+bool same_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& plane) {
+  return glm::dot(a, plane) * glm::dot(b, plane) > 0;
+}
+
+/// The index on the ray's side over that behind the surface. Nested media are not tracked: outside is 1. An index of 0
+/// is how files say that there is none.
+double index_ratio(const Material& m, bool entering) {
+  if (m.ior == 0) return 1;
+  return entering ? 1 / static_cast<double>(m.ior) : m.ior;
+}
+
+}  // namespace
+
+Waves::Waves(const Picture& picture, TracerGate& gate)
+    : picture_(picture), gate_(gate), levels_(static_cast<std::size_t>(picture.depth) + 1) {}
+
+std::size_t Waves::Level::wave_end(std::size_t first, std::size_t batch) const {
+  if (paths.size() - first <= batch) return paths.size();
+  const auto sample_changes = [&](std::size_t i) {
+    return i == paths.size() || paths[i].sample != paths[i - 1].sample;
+  };
+  std::size_t end = first + batch;
+  while (end > first && !sample_changes(end)) --end;
+  if (end > first) return end;
+  for (end = first + batch; !sample_changes(end);) ++end;
+  return end;
+}
+
+std::span<const glm::vec3> Waves::radiance() {
+  Level& level = levels_.front();
+  level.paths.clear();
+  for (std::uint32_t i = 0; i < level.rays.size(); ++i) level.paths.push_back({glm::vec3(1), i});
+  radiance_.assign(level.rays.size(), glm::vec3(0));
+  rays_[primary_ray] += level.rays.size();
+  trace(0, 0, level.rays.size());
+  return radiance_;
+}
+
+void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
+  const Level& level = levels_[depth];
+  Level* next = depth + 1 < levels_.size() ? &levels_[depth + 1] : nullptr;
+  const std::span<const Ray> rays(level.rays.data() + first, last - first);
+  hits_.resize(std::max(hits_.size(), rays.size()));
+  gate_.closest(rays, {hits_.data(), rays.size()}, depth ? RayClass::bounce : RayClass::primary);
+
+  points_.clear();
+  if (next) next->clear();
+  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], level.paths[first + i], next);
+  for (const Light& light : picture_.lights) shine(light);
+  if (!next) return;
+  for (std::size_t begin = 0, end; begin < next->rays.size(); begin = end) {
+    end = next->wave_end(begin, picture_.limits.batch);
+    trace(depth + 1, begin, end);
+  }
+}
+
+void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Level* next) {
+  if (!hit.hit()) {
+    invalid_ += (hit.status & status_invalid) != 0;
+    radiance_[path.sample] += path.weight * picture_.environment(ray.direction);
+    return;
+  }
+  const Surface surface = surface_at(picture_.geometry, ray, hit);
+  const Material& material = picture_.materials[surface.material];
+  radiance_[path.sample] += path.weight * (material.ambient * material.color);
+  const LitPoint point{Departure(surface, picture_.limits), facing(surface.shading_normal, ray.direction),
+                       glm::vec3(-ray.direction), surface.material, path};
+  if (material.diffuse > 0 || material.specular > 0) points_.push_back(point);
+  if (next && (material.reflect > 0 || material.transmit > 0)) scatter(ray, surface, point, *next);
+}
+
+void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Level& next) {
+  const Material& material = picture_.materials[point.material];
+  const glm::dvec3& d = ray.direction;
+  glm::vec3 mirror = point.path.weight * material.reflect;
+  const glm::vec3 glass = point.path.weight * material.transmit * material.color;
+  if (matters(glass)) {
+    const double eta = index_ratio(material, glm::dot(d, surface.normal) < 0);
+    const auto through = refracted(d, point.normal, eta);
+    if (!through) mirror += glass;
+    // An interpolated normal may bend the ray back to where it came from: then it passes straight.
+    else
+      spawn(next, point, same_side(*through, d, surface.normal) ? *through : d, glass, rays_[refracted_ray]);
+  }
+  const glm::dvec3 back = reflected(d, point.normal);
+  // The same below a mirror's own surface: then the flat normal reflects.
+  const bool outside = !same_side(back, d, surface.normal);
+  spawn(next, point, outside ? back : reflected(d, surface.normal), mirror, rays_[reflected_ray]);
+}
+
+void Waves::spawn(Level& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
+                  std::uint64_t& count) {
+  if (!matters(weight)) return;
+  next.add({from.departure.towards(direction), 0, direction, infinity}, {weight, from.path.sample});
+  ++count;
+}
+
+void Waves::shine(const Light& light) {
+  const bool is_point = light.type == Light::Type::point;
+  shadow_.clear();
+  for (const LitPoint& p : points_) {
+    const glm::dvec3 to_light = is_point ? light.position - p.departure.position : -light.direction;
+    if (!(glm::dot(p.normal, to_light) > 0)) continue;
+    const glm::vec3 unit(to_light / std::sqrt(glm::dot(to_light, to_light)));
+    const Material& material = picture_.materials[p.material];
+    const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
+    if (seen == glm::vec3(0)) continue;
+    const glm::dvec3 from = p.departure.towards(to_light);
+    // t counts in lengths of the direction: at 1 the ray has reached a point light.
+    shadow_.add({from, 0, is_point ? light.position - from : to_light, is_point ? 1 : infinity}, {seen, p.path.sample});
+  }
+  rays_[shadow_ray] += shadow_.rays.size();
+  shadow_status_.resize(std::max(shadow_status_.size(), shadow_.rays.size()));
+  gate_.any(shadow_.rays, {shadow_status_.data(), shadow_.rays.size()}, RayClass::shadow);
+  for (std::size_t i = 0; i < shadow_.paths.size(); ++i) {
+    if (!(shadow_status_[i] & status_hit)) radiance_[shadow_.paths[i].sample] += shadow_.paths[i].weight;
+    invalid_ += (shadow_status_[i] & status_invalid) != 0;
+  }
+}
+
+}  // namespace rayengine

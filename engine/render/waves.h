@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "engine/render/departure.h"
+#include "engine/render/environment.h"
+#include "engine/render/tracer_gate.h"
+#include "engine/scene/scene.h"
+
+namespace rayengine {
+
+/// What all threads that render one picture share; nothing in it changes.
+struct Picture {
+  const Geometry& geometry;
+  std::span<const Light> lights;
+  std::span<const Material> materials;
+  const Environment& environment;
+  Limits limits;
+  int depth;  ///< bounces after the primary ray
+};
+
+/// Traces the trees of rays that grow from primary rays, level by level in waves (Whitted, "An improved illumination
+/// model for shaded display", 1980), and sums what each of them sees. Buffers are kept from call to call; one thread
+/// uses one object.
+///
+/// The sum of a sample is formed in an order that depends on its own rays alone, never on how samples share waves.
+class Waves {
+ public:
+  Waves(const Picture& picture, TracerGate& gate);
+
+  /// The rays to start from, for the caller to fill; directions must have unit length.
+  std::vector<Ray>& primary() { return levels_.front().rays; }
+  /// The linear colour that each of them sees. Valid until the next call.
+  std::span<const glm::vec3> radiance();
+
+  /// Rays traced so far: primary, shadow, reflected, refracted; and how many of them the tracer called invalid.
+  const std::array<std::uint64_t, 4>& rays() const { return rays_; }
+  std::uint64_t invalid_rays() const { return invalid_; }
+
+ private:
+  /// What a ray brings to the picture: `weight` times what it sees, added to `sample`.
+  struct Path {
+    glm::vec3 weight;
+    std::uint32_t sample;
+  };
+  /// Rays of one depth, in the order of their samples.
+  struct Level {
+    std::vector<Ray> rays;
+    std::vector<Path> paths;
+
+    void clear() { rays.clear(), paths.clear(); }
+    void add(const Ray& ray, const Path& path) { rays.push_back(ray), paths.push_back(path); }
+    /// The end of the wave that starts at `first`: whole samples, as many as fit `batch` rays, at least one.
+    std::size_t wave_end(std::size_t first, std::size_t batch) const;
+  };
+  /// A hit that lights may reach.
+  struct LitPoint {
+    Departure departure;
+    glm::dvec3 normal;  ///< shading normal, facing the eye
+    glm::vec3 view;     ///< unit, towards the eye
+    std::uint32_t material;
+    Path path;
+  };
+
+  void trace(std::size_t depth, std::size_t first, std::size_t last);
+  void shade(const Ray& ray, const Hit& hit, const Path& path, Level* next);
+  void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Level& next);
+  void spawn(Level& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
+             std::uint64_t& count);
+  void shine(const Light& light);
+
+  const Picture& picture_;
+  TracerGate& gate_;
+  std::vector<Level> levels_;  ///< by depth; 0 holds the primary rays
+  Level shadow_;
+  std::vector<Hit> hits_;
+  std::vector<std::uint32_t> shadow_status_;
+  std::vector<LitPoint> points_;
+  std::vector<glm::vec3> radiance_;
+  std::array<std::uint64_t, 4> rays_{};
+  std::uint64_t invalid_ = 0;
+};
+
+}  // namespace rayengine

@@ -1,0 +1,75 @@
+#include "engine/tracers.h"
+
+#include <algorithm>
+#include <array>
+
+#include "cpu/embree_tracer.h"
+#include "cpu/reference_tracer.h"
+
+namespace rayengine {
+namespace {
+
+using Maker = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>, const TracerOptions&);
+
+std::unique_ptr<Tracer> make_embree(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  return make_embree_tracer(std::move(geometry), options.precision);
+}
+
+/// The oracle is exact, so it holds every precision.
+std::unique_ptr<Tracer> make_reference(std::shared_ptr<const Geometry> geometry, const TracerOptions&) {
+  return make_reference_tracer(std::move(geometry));
+}
+
+constexpr std::array embree_precisions{Precision::fast, Precision::robust};
+constexpr std::array all_precisions{Precision::half, Precision::fast, Precision::robust, Precision::certified};
+
+struct Entry {
+  TracerInfo info;
+  Maker make;
+  std::span<const Precision> precisions;
+};
+
+/// All tracers there are; the first is `auto`.
+constexpr std::array registry{
+    Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
+    Entry{{"reference", "CPU: the oracle, 128-bit floating point; slow, and right"}, make_reference, all_precisions},
+};
+
+template <class Range, class Name>
+std::string list(const Range& range, Name name) {
+  std::string result;
+  for (const auto& item : range) result += (result.empty() ? "" : ", ") + std::string(name(item));
+  return result;
+}
+
+const Entry& find(std::string_view name) {
+  if (name == "auto") return registry.front();
+  const auto found =
+      std::find_if(registry.begin(), registry.end(), [=](const Entry& e) { return e.info.name == name; });
+  if (found != registry.end()) return *found;
+  throw Error("there is no tracer '" + std::string(name) + "': choose auto, " +
+              list(registry, [](auto& e) { return e.info.name; }));
+}
+
+}  // namespace
+
+std::span<const TracerInfo> tracer_list() {
+  static const auto infos = [] {
+    std::array<TracerInfo, registry.size()> result;
+    std::transform(registry.begin(), registry.end(), result.begin(), [](const Entry& e) { return e.info; });
+    return result;
+  }();
+  return infos;
+}
+
+std::unique_ptr<Tracer> make_tracer(std::string_view name, std::shared_ptr<const Geometry> geometry,
+                                    const TracerOptions& options) {
+  const Entry& entry = find(name);
+  if (std::find(entry.precisions.begin(), entry.precisions.end(), options.precision) == entry.precisions.end())
+    throw Error("the tracer " + std::string(entry.info.name) + " cannot hold precision " +
+                std::string(to_string(options.precision)) + ": choose " +
+                list(entry.precisions, [](Precision p) { return to_string(p); }));
+  return entry.make(std::move(geometry), options);
+}
+
+}  // namespace rayengine
