@@ -19,6 +19,18 @@ It owner(It first, It last, std::uint32_t primitive) {
                                     [](std::uint32_t p, const auto& entry) { return p < entry.first_primitive; }));
 }
 
+/// The placement, among those that an instance object became, whose primitives include `primitive`.
+const Instance& placement(const Geometry& geometry, std::uint32_t object, std::uint32_t primitive) {
+  const auto first = geometry.instances.begin() + geometry.objects[object].first;
+  const auto last =
+      std::find_if(first, geometry.instances.end(), [=](const Instance& i) { return i.object != object; });
+  const auto nested = std::next(first);  // the first places the group itself, the others what it holds
+  if (nested == last || primitive < nested->first_primitive) return *first;
+  const Instance& found = *owner(nested, last, primitive);
+  const std::uint32_t end = found.first_primitive + geometry.groups[found.group]->primitive_count;
+  return primitive < end ? found : *first;
+}
+
 Box transformed(const Box& box, const Affine& map) {
   Box result;
   for (int corner = 0; corner < 8; ++corner)
@@ -28,13 +40,6 @@ Box transformed(const Box& box, const Affine& map) {
 }
 
 }  // namespace
-
-std::uint32_t Geometry::primitive_count() const {
-  std::uint32_t count = static_cast<std::uint32_t>(triangles.size());
-  for (const Quadric& q : quadrics) count += rayengine::primitive_count(q);
-  for (const Instance& i : instances) count += groups[i.group]->primitive_count();
-  return count;
-}
 
 std::size_t Geometry::bytes() const {
   std::size_t total = bytes_of(vertices) + bytes_of(exact_vertices) + bytes_of(normals) + bytes_of(triangles) +
@@ -58,9 +63,7 @@ Box bounds(const Geometry& geometry, const Instance& instance) {
 PrimitiveRef resolve(const Geometry& geometry, std::uint32_t object, std::uint32_t primitive) {
   const Object& o = geometry.objects[object];
   if (o.kind != Object::Kind::instance) return {&geometry, nullptr, object, primitive};
-  const auto first = geometry.instances.begin() + o.first;
-  const auto last = std::find_if(first, geometry.instances.end(), [=](const Instance& i) { return i.object != object; });
-  const Instance& instance = *owner(first, last, primitive);
+  const Instance& instance = placement(geometry, object, primitive);
   const Geometry& group = *geometry.groups[instance.group];
   const std::uint32_t local = primitive - instance.first_primitive;
   const auto inner = owner(group.objects.begin(), group.objects.end(), local);

@@ -35,7 +35,8 @@ struct Instance {
 };
 static_assert(sizeof(Instance) <= 112);
 
-/// Everything that rays can hit; immutable once built (see GeometryBuilder). Groups hold no instances themselves.
+/// Everything that rays can hit; immutable once built (see GeometryBuilder). Where a group holds instances, whoever
+/// places it places those too, so that only the top level's `instances` count.
 struct Geometry {
   std::vector<glm::vec3> vertices;         ///< what single precision sees
   std::vector<glm::dvec3> exact_vertices;  ///< the vertices in double; empty when `vertices` are exact
@@ -50,10 +51,12 @@ struct Geometry {
   std::vector<std::shared_ptr<const Geometry>> groups;
 
   std::vector<Object> objects;
-  Box bounds;  ///< of everything, instances included
+  Box bounds;                         ///< of everything, instances included
+  std::uint32_t primitive_count = 0;  ///< of everything, instances included
 
-  glm::dvec3 vertex(std::uint32_t i) const { return exact_vertices.empty() ? glm::dvec3(vertices[i]) : exact_vertices[i]; }
-  std::uint32_t primitive_count() const;
+  glm::dvec3 vertex(std::uint32_t i) const {
+    return exact_vertices.empty() ? glm::dvec3(vertices[i]) : exact_vertices[i];
+  }
   /// Bytes held by the arrays above, groups included once each.
   std::size_t bytes() const;
 };
@@ -63,10 +66,10 @@ Box bounds(const Geometry& geometry, const Instance& instance);
 
 /// The primitive of a group (or of the geometry itself) that a hit's ids name.
 struct PrimitiveRef {
-  const Geometry* geometry = nullptr;   ///< the one that holds the primitive
-  const Instance* instance = nullptr;   ///< null when it is not instanced
-  std::uint32_t object = 0;             ///< the object within `geometry`
-  std::uint32_t primitive = 0;          ///< the primitive within that object
+  const Geometry* geometry = nullptr;  ///< the one that holds the primitive
+  const Instance* instance = nullptr;  ///< null when it is not instanced
+  std::uint32_t object = 0;            ///< the object within `geometry`
+  std::uint32_t primitive = 0;         ///< the primitive within that object
   /// Its triangle in `geometry`; only for meshes.
   std::uint32_t triangle() const { return geometry->objects[object].first + primitive; }
   const Quadric& quadric() const { return geometry->quadrics[geometry->objects[object].first]; }
@@ -76,8 +79,8 @@ struct PrimitiveRef {
 /// Resolves a hit's object and primitive ids, through instances.
 PrimitiveRef resolve(const Geometry& geometry, std::uint32_t object, std::uint32_t primitive);
 
-/// Collects objects in order and makes a Geometry of them. Every add returns the new object's id, and throws Error, with
-/// the builder left as it was, on numbers that are not finite, indices out of range and singular transforms.
+/// Collects objects in order and makes a Geometry of them. Every add returns the new object's id, and throws Error,
+/// with the builder left as it was, on numbers that are not finite, indices out of range and singular transforms.
 class GeometryBuilder {
  public:
   /// `to_world` is applied to positions and, as normals need it, to normals.
@@ -92,11 +95,11 @@ class GeometryBuilder {
 
  private:
   std::uint32_t begin(Object::Kind kind, std::size_t first, std::uint32_t material);
+  void place(const Instance& instance);
   std::uint32_t group_index(const std::shared_ptr<const Geometry>& group);
 
   Geometry geometry_;
   bool exact_ = true;
-  std::uint32_t primitives_ = 0;
 };
 
 }  // namespace rayengine

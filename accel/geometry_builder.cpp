@@ -21,8 +21,8 @@ void check(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (mesh.triangles[i][k] >= mesh.positions.size())
-        throw Error("triangle " + std::to_string(i) + " of a mesh names vertex " + std::to_string(mesh.triangles[i][k]) +
-                    ", but there are " + std::to_string(mesh.positions.size()));
+        throw Error("triangle " + std::to_string(i) + " of a mesh names vertex " +
+                    std::to_string(mesh.triangles[i][k]) + ", but there are " + std::to_string(mesh.positions.size()));
 }
 
 glm::vec3 world_normal(const WorldToObject& map, const glm::vec3& n) {
@@ -42,9 +42,7 @@ std::array<double, 2> default_clip(QuadricType type) {
   }
 }
 
-bool can_be_capped(QuadricType type) {
-  return type >= QuadricType::cylinder && type <= QuadricType::hyperboloid2;
-}
+bool can_be_capped(QuadricType type) { return type >= QuadricType::cylinder && type <= QuadricType::hyperboloid2; }
 
 /// Scales a matrix by a power of two, which moves no root, so that its largest entry lies in [1, 2).
 QuadricMatrix normalised(QuadricMatrix matrix) {
@@ -67,13 +65,15 @@ void check(const QuadricShape& shape, const std::array<double, 2>& clip) {
     throw Error("the clip of a capped " + name + " must be finite");
   if (shape.type == QuadricType::general && !shape.matrix) throw Error("a quadric needs the ten numbers of its matrix");
   if (shape.type != QuadricType::general && shape.matrix) throw Error("only a quadric takes a matrix, not a " + name);
-  if (shape.box && (shape.box->empty() || shape.capped)) throw Error("the box of a " + name + " is empty, or closed by caps");
+  if (shape.box && shape.type == QuadricType::disk) throw Error("a disk takes no box: its edge is its own");
+  if (shape.box && (shape.box->empty() || shape.capped))
+    throw Error("the box of a " + name + " is empty, or closed by caps");
 }
 
 }  // namespace
 
 std::uint32_t GeometryBuilder::begin(Object::Kind kind, std::size_t first, std::uint32_t material) {
-  geometry_.objects.push_back({kind, static_cast<std::uint32_t>(first), primitives_, material});
+  geometry_.objects.push_back({kind, static_cast<std::uint32_t>(first), geometry_.primitive_count, material});
   return static_cast<std::uint32_t>(geometry_.objects.size() - 1);
 }
 
@@ -95,7 +95,7 @@ std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, con
   }
   for (const glm::uvec3& t : mesh.triangles) geometry_.triangles.push_back(t + base);
   geometry_.triangle_object.resize(geometry_.triangles.size(), object);
-  primitives_ += static_cast<std::uint32_t>(mesh.triangles.size());
+  geometry_.primitive_count += static_cast<std::uint32_t>(mesh.triangles.size());
   return object;
 }
 
@@ -116,32 +116,41 @@ std::uint32_t GeometryBuilder::add(const QuadricShape& shape, std::uint32_t mate
   q.object = begin(Object::Kind::quadric, geometry_.quadrics.size(), material);
   geometry_.quadrics.push_back(q);
   geometry_.bounds.add(bounds(geometry_, q));
-  primitives_ += primitive_count(q);
+  geometry_.primitive_count += primitive_count(q);
   return q.object;
 }
 
 std::uint32_t GeometryBuilder::group_index(const std::shared_ptr<const Geometry>& group) {
-  for (std::size_t i = 0; i < geometry_.groups.size(); ++i)
+  for (std::size_t i = geometry_.groups.size(); i-- > 0;)  // mostly the same group again
     if (geometry_.groups[i] == group) return static_cast<std::uint32_t>(i);
   geometry_.groups.push_back(group);
   return static_cast<std::uint32_t>(geometry_.groups.size() - 1);
 }
 
-std::uint32_t GeometryBuilder::add(std::shared_ptr<const Geometry> group, const Affine& to_world, std::uint32_t material) {
-  const WorldToObject to_group = inverse(to_world);
-  const std::uint32_t object = begin(Object::Kind::instance, geometry_.instances.size(), material);
-  const Instance instance{to_group, group_index(group), object, 0};
+void GeometryBuilder::place(const Instance& instance) {
   geometry_.bounds.add(bounds(geometry_, instance));
   geometry_.instances.push_back(instance);
-  primitives_ += group->primitive_count();
+}
+
+std::uint32_t GeometryBuilder::add(std::shared_ptr<const Geometry> group, const Affine& to_world,
+                                   std::uint32_t material) {
+  const WorldToObject to_group = inverse(to_world);
+  const std::uint32_t object = begin(Object::Kind::instance, geometry_.instances.size(), material);
+  place({to_group, group_index(group), object, 0});
+  for (const Instance& inner : group->instances) {
+    const Affine nested = to_world * object_to_world(inner.to_group);
+    place({inverse(nested), group_index(group->groups[inner.group]), object,
+           group->objects[inner.object].first_primitive + inner.first_primitive});
+  }
+  geometry_.primitive_count += group->primitive_count;
   return object;
 }
 
 std::shared_ptr<const Geometry> GeometryBuilder::build() {
-  if (exact_) geometry_.exact_vertices.clear();
+  if (exact_) geometry_.exact_vertices = {};
   if (!geometry_.normals.empty()) geometry_.normals.resize(geometry_.vertices.size());
-  auto result = std::make_shared<Geometry>(std::move(geometry_));
-  for (auto shrink = [](auto&... v) { (v.shrink_to_fit(), ...); }; false;) shrink(result->vertices);
+  geometry_.vertices.reserve(geometry_.vertices.size() + 1);  // Embree reads 16 bytes at the last vertex
+  auto result = std::make_shared<const Geometry>(std::move(geometry_));
   *this = {};
   return result;
 }

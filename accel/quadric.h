@@ -27,7 +27,8 @@ inline constexpr std::size_t quadric_type_count = 10;
 std::string_view to_string(QuadricType type);
 std::optional<QuadricType> parse_quadric_type(std::string_view name);
 
-/// The upper triangle A..J of the symmetric matrix Q = [[A,B,C,D],[B,E,F,G],[C,F,H,I],[D,G,I,J]]; the surface is x^T Q x = 0.
+/// The upper triangle A..J of the symmetric matrix Q = [[A,B,C,D],[B,E,F,G],[C,F,H,I],[D,G,I,J]]; the surface is x^T Q
+/// x = 0.
 using QuadricMatrix = std::array<double, 10>;
 
 /// The matrix of a unit primitive. `general` has none and gives zeros.

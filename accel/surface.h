@@ -22,4 +22,12 @@ Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);
 /// The same hit with t, barycentrics, normal and the bound on t worked out in double for the primitive that it names.
 Hit refine(const Geometry& geometry, const Ray& ray, const Hit& hit);
 
+/// The world-space unit normal at `point` of a quadric's part: 0 side, 1 lower cap, 2 upper cap. `instance` may be
+/// null.
+glm::dvec3 quadric_normal(const Geometry& geometry, const Quadric& quadric, const Instance* instance,
+                          std::uint32_t part, const glm::dvec3& point);
+
+/// The normal of a triangle in its geometry's own space, by its counter-clockwise corners; not normalised.
+glm::dvec3 triangle_normal(const Geometry& geometry, std::uint32_t triangle);
+
 }  // namespace rayengine

@@ -1,8 +1,9 @@
 #pragma once
 
-// The intersection kernels as C++. Each .glsl file below is written once, in the subset that GLSL and this header share,
-// and becomes a set of templates over REAL: float, double, or a vector of lanes of either (GCC vector extensions), whose
-// comparisons give masks. Everything is inlined, so that code built for one instruction set never leaks into another.
+// The intersection kernels as C++. Each .glsl file below is written once, in the subset that GLSL and this header
+// share, and becomes a set of templates over REAL: float, double, or a vector of lanes of either (GCC vector
+// extensions), whose comparisons give masks. Everything is inlined, so that code built for one instruction set never
+// leaks into another.
 
 #include <cmath>
 #include <limits>
@@ -28,13 +29,13 @@ struct Scalar {
   using type = REAL;
 };
 template <class REAL>
-  requires is_lanes<REAL>
+requires is_lanes<REAL>
 struct Scalar<REAL> {
   using type = std::remove_cvref_t<decltype(REAL{}[0])>;
 };
 
-#define KERNEL                 \
-  template <class REAL>        \
+#define KERNEL          \
+  template <class REAL> \
   [[gnu::always_inline]] inline
 #define VEC3 Vec3<REAL>
 #define BOOL Mask<REAL>
@@ -53,9 +54,7 @@ template <class MASK, class REAL>
 [[gnu::always_inline]] inline REAL pick(MASK condition, REAL yes, REAL no) {
   return condition ? yes : no;
 }
-KERNEL REAL magnitude(REAL a) {
-  return a < 0 ? -a : a;
-}
+KERNEL REAL magnitude(REAL a) { return a < 0 ? -a : a; }
 KERNEL REAL smaller(REAL a, REAL b) { return a < b ? a : b; }
 KERNEL REAL larger(REAL a, REAL b) { return a > b ? a : b; }
 KERNEL REAL root(REAL a) {

@@ -54,3 +54,32 @@ KERNEL void roots(REAL a, REAL b, REAL c, OUT(REAL) near, OUT(REAL) far) {
 KERNEL REAL plane_root(REAL at, VEC3 p, VEC3 d) {
   return pick(d.z != 0, (at - p.z) / d.z, REAL_MAX);
 }
+
+// The clips: a root r along p + r d as it is where it lies on the clipped surface, else REAL_MAX. Clips are closed.
+KERNEL REAL clip_z(REAL r, VEC3 p, VEC3 d, REAL zmin, REAL zmax) {
+  REAL z = p.z + r * d.z;
+  return pick(both(z >= zmin, z <= zmax), r, REAL_MAX);
+}
+
+KERNEL REAL clip_box(REAL r, VEC3 p, VEC3 d, VEC3 lower, VEC3 upper) {
+  REAL x = p.x + r * d.x;
+  REAL y = p.y + r * d.y;
+  BOOL within_x = both(x >= lower.x, x <= upper.x);
+  BOOL within_y = both(y >= lower.y, y <= upper.y);
+  return clip_z(pick(both(within_x, within_y), r, REAL_MAX), p, d, lower.z, upper.z);
+}
+
+KERNEL REAL clip_disk(REAL r, VEC3 p, VEC3 d) {
+  REAL x = p.x + r * d.x;
+  REAL y = p.y + r * d.y;
+  return pick(x * x + y * y <= 1, r, REAL_MAX);
+}
+
+// The cap in the plane z = at of the form A x^2 + E y^2 + H z^2 + 2 I z + J: what of the plane is not outside.
+KERNEL REAL cap(REAL A, REAL E, REAL H, REAL I, REAL J, REAL at, VEC3 p, VEC3 d) {
+  REAL r = plane_root(at, p, d);
+  REAL x = p.x + r * d.x;
+  REAL y = p.y + r * d.y;
+  REAL form = (A * x * x + E * y * y) + ((H * at * at + 2 * I * at) + J);
+  return pick(form <= 0, r, REAL_MAX);
+}

@@ -1,0 +1,180 @@
+#include "cpu/embree_scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include "accel/rounding.h"
+
+namespace rayengine {
+namespace {
+
+// Embree takes coordinates up to this; beyond, its own checks refuse them.
+constexpr double embree_range = 1.8e18;
+
+/// Rays start within near_extents of the scene (see RayLoader) and are rounded to float there: their origins move by
+/// near_extents 2^-24 of the extent, and on the way of at most some 10 extents their rounded directions lead them
+/// astray by 10 2^-24 more. Boxes padded by this hold what the exact rays hit.
+constexpr double padding_per_extent = 0x1p-20;
+
+/// Infinite boxes become the largest that Embree takes.
+float clamped(float a) { return std::clamp(a, -static_cast<float>(embree_range), static_cast<float>(embree_range)); }
+
+void quadric_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& bucket = *static_cast<const QuadricBucket*>(args->geometryUserPtr);
+  const Geometry& geometry = *bucket.geometry;
+  const Box box = bounds(geometry, geometry.quadrics[bucket.quadrics[args->primID]]);
+  const double pad = bucket.padding;
+  RTCBounds& out = *args->bounds_o;
+  out.lower_x = clamped(float_below(box.lower.x - pad)), out.upper_x = clamped(float_above(box.upper.x + pad));
+  out.lower_y = clamped(float_below(box.lower.y - pad)), out.upper_y = clamped(float_above(box.upper.y + pad));
+  out.lower_z = clamped(float_below(box.lower.z - pad)), out.upper_z = clamped(float_above(box.upper.z + pad));
+}
+
+Box finite_part(const Geometry& geometry) {
+  Box box;
+  for (const glm::vec3& v : geometry.vertices) box.add(glm::dvec3(v));
+  const auto add = [&](const Box& b) {
+    if (b.finite()) box.add(b);
+  };
+  for (const Quadric& q : geometry.quadrics) add(bounds(geometry, q));
+  for (const Instance& i : geometry.instances) add(bounds(geometry, i));
+  return box;
+}
+
+/// The largest factor by which a map stretches a coordinate.
+double stretch(const glm::dmat3& m) {
+  double largest = 0;
+  for (int row = 0; row < 3; ++row)
+    largest = std::max(largest, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+  return largest;
+}
+
+/// Embree's layout of an affine map: three columns, then the origin, in floats.
+void set_transform(RTCGeometry instance, const Affine& map) {
+  float columns[12];
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) columns[3 * c + r] = static_cast<float>(map.linear[c][r]);
+  for (int r = 0; r < 3; ++r) columns[9 + r] = static_cast<float>(map.origin[r]);
+  rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+}
+
+unsigned attach(RTCScene scene, RTCGeometry geometry) {
+  rtcCommitGeometry(geometry);
+  const unsigned id = rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  return id;
+}
+
+bool count_bytes(void* total, ssize_t bytes, bool) {
+  static_cast<std::atomic<std::ptrdiff_t>*>(total)->fetch_add(bytes);
+  return true;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision)
+    : geometry_(std::move(geometry)), precision_(precision), finite_bounds_(finite_part(*geometry_)) {
+  if (!finite_bounds_.empty() && !(finite_bounds_.extent() < embree_range))
+    throw Error("the scene reaches beyond 1.8e18, which Embree's single precision cannot hold: scale it down");
+  device_ = rtcNewDevice(nullptr);
+  if (!device_) throw Error("Embree found no device to run on");
+  std::atomic<std::ptrdiff_t> memory{0};
+  rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &memory);
+  if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) native_packet_ = 16;
+
+  const auto start = std::chrono::steady_clock::now();
+  const double padding =
+      precision_ == Precision::fast || finite_bounds_.empty() ? 0 : finite_bounds_.extent() * padding_per_extent;
+  groups_.resize(geometry_->groups.size());
+  std::vector<double> group_padding(groups_.size());
+  for (const Instance& i : geometry_->instances) {
+    double& pad = group_padding[i.group];
+    pad = std::max(pad, stretch(i.to_group.linear) * padding);
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i) build(groups_[i], *geometry_->groups[i], group_padding[i]);
+  build(top_, *geometry_, padding);
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
+  embree_bytes_ = memory;
+  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
+    throw Error("Embree could not build the scene: it may be out of memory");
+}
+
+EmbreeScene::~EmbreeScene() {
+  for (const Level& level : groups_) rtcReleaseScene(level.scene);
+  rtcReleaseScene(top_.scene);
+  rtcReleaseDevice(device_);
+}
+
+std::size_t EmbreeScene::bytes() const {
+  std::size_t total =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(embree_bytes_, 0)) + groups_.capacity() * sizeof(Level);
+  const auto add = [&](const Level& level) {
+    for (const auto& bucket : level.buckets)
+      total += sizeof(QuadricBucket) + bucket->quadrics.capacity() * sizeof(std::uint32_t);
+  };
+  add(top_);
+  for (const Level& level : groups_) add(level);
+  return total;
+}
+
+void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) {
+  level.geometry = &geometry;
+  level.scene = rtcNewScene(device_);
+  rtcSetSceneFlags(level.scene,
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
+                                              (precision_ == Precision::fast ? 0 : RTC_SCENE_FLAG_ROBUST)));
+  if (&level == &top_) attach_instances();
+  attach_triangles(level);
+  attach_quadrics(level, padding);
+  rtcCommitScene(level.scene);
+}
+
+void EmbreeScene::attach_instances() {
+  for (const Instance& i : geometry_->instances) {
+    RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, groups_[i.group].scene);
+    rtcSetGeometryTimeStepCount(instance, 1);
+    set_transform(instance, object_to_world(i.to_group));
+    attach(top_.scene, instance);
+  }
+}
+
+void EmbreeScene::attach_triangles(Level& level) {
+  const Geometry& g = *level.geometry;
+  if (g.triangles.empty()) return;
+  RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g.vertices.data(), 0,
+                             sizeof(glm::vec3), g.vertices.size());
+  rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, g.triangles.data(), 0,
+                             sizeof(glm::uvec3), g.triangles.size());
+  level.triangles_id = attach(level.scene, mesh);
+}
+
+void EmbreeScene::attach_quadrics(Level& level, double padding) {
+  const QuadricCallbacks& callbacks = quadric_callbacks(best_isa(), precision_);
+  std::vector<std::vector<std::uint32_t>> by_type(quadric_type_count);
+  for (std::size_t i = 0; i < level.geometry->quadrics.size(); ++i)
+    by_type[static_cast<std::size_t>(level.geometry->quadrics[i].type)].push_back(static_cast<std::uint32_t>(i));
+  level.first_bucket = level.triangles_id == RTC_INVALID_GEOMETRY_ID
+                           ? static_cast<unsigned>(&level == &top_ ? geometry_->instances.size() : 0)
+                           : level.triangles_id + 1;
+  for (std::size_t type = 0; type < by_type.size(); ++type) {
+    if (by_type[type].empty()) continue;
+    level.buckets.push_back(std::make_unique<QuadricBucket>(
+        QuadricBucket{level.geometry, static_cast<QuadricType>(type), std::move(by_type[type]), float_above(padding)}));
+    QuadricBucket& bucket = *level.buckets.back();
+    RTCGeometry user = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(bucket.quadrics.size()));
+    rtcSetGeometryUserData(user, &bucket);
+    rtcSetGeometryBoundsFunction(user, quadric_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(user, callbacks.intersect[type]);
+    rtcSetGeometryOccludedFunction(user, callbacks.occluded[type]);
+    attach(level.scene, user);
+  }
+}
+
+}  // namespace rayengine

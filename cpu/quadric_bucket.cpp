@@ -1,0 +1,17 @@
+#include "cpu/quadric_bucket.h"
+
+namespace rayengine {
+
+void collect_hit(HitCollector& collector, const HitCollector::Entry& entry) { collector.entries.push_back(entry); }
+
+const QuadricCallbacks& quadric_callbacks(Isa isa, Precision precision) {
+  const bool fast = precision == Precision::fast;
+  switch (isa) {
+    case Isa::avx512: return fast ? avx512::fast_callbacks : avx512::robust_callbacks;
+    case Isa::avx2: return fast ? avx2::fast_callbacks : avx2::robust_callbacks;
+    case Isa::sse2: break;
+  }
+  return fast ? sse2::fast_callbacks : sse2::robust_callbacks;
+}
+
+}  // namespace rayengine
