@@ -3,7 +3,7 @@
 #define REAL float
 #define VEC3 vec3
 #define BOOL bool
-#define OUT(T) out T
+#define OUT(T) out precise T // what leads to it is computed as written: watertight triangles rest on it
 #define REAL_MAX 3.402823466e38
 
 bool both(bool a, bool b) { return a && b; }
