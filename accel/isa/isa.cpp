@@ -10,10 +10,11 @@ namespace {
 constexpr std::array<std::string_view, 3> names{"sse2", "avx2", "avx512"};
 
 Isa processor_isa() {
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi");
   const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
-  if (avx512) return Isa::avx512;
-  return __builtin_cpu_supports("avx2") ? Isa::avx2 : Isa::sse2;
+  if (!avx2) return Isa::sse2;
+  return avx512 ? Isa::avx512 : Isa::avx2;
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "accel/bvh.h"
+#include "accel/walk.h"
+
+namespace rayengine {
+
+/// A call of walk(), in the plain types that code built for several instruction sets may touch.
+struct WalkJob {
+  const WideNode* nodes;
+  double center[3], scale;    ///< of the local frame
+  double lower[3], upper[3];  ///< bounds of all nodes, in the local frame
+  const Ray* rays;
+  std::size_t ray_count;
+  WalkCursor* cursors;
+  std::uint32_t capacity;
+  TreeletEntry* lists;
+  std::uint32_t* counts;
+  std::uint64_t* queue;  ///< room for as many as the nodes have lanes, and one
+};
+
+namespace sse2 {
+void walk(const WalkJob& job);
+}
+namespace avx2 {
+void walk(const WalkJob& job);
+}
+namespace avx512 {
+void walk(const WalkJob& job);
+}
+
+}  // namespace rayengine
