@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "accel/isa/isa.h"
 #include "accel/isa/walk_kernel.h"
 
 namespace rayengine {
@@ -18,20 +17,33 @@ void set_bounds(WalkJob& job, const WideNode& root) {
 
 }  // namespace
 
-void walk(const Treelets& treelets, std::span<const Ray> rays, std::span<WalkCursor> cursors, std::uint32_t capacity,
-          std::span<TreeletEntry> lists, std::span<std::uint32_t> counts) {
+void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std::span<WalkCursor> cursors,
+               std::uint32_t capacity, std::span<TreeletEntry> lists, std::span<std::uint32_t> counts) {
+  if (treelets.treelets.empty()) {
+    std::fill_n(cursors.begin(), rays.size(), WalkCursor{WalkCursor::end});
+    std::fill_n(counts.begin(), rays.size(), 0);
+    return;
+  }
   // A ray may have all lanes of all nodes waiting at once, however unlikely; memory that is not touched costs nothing.
   const auto queue = std::make_unique_for_overwrite<std::uint64_t[]>(treelets.nodes.size() * WideNode::width + 2);
-  WalkJob job{treelets.nodes.data(), {},          treelets.frame.scale, {},       {},
-              rays.data(),           rays.size(), cursors.data(),       capacity, lists.data(),
-              counts.data(),         queue.get()};
+  WalkJob job{};
+  job.nodes = treelets.nodes.data();
+  job.scale = treelets.frame.scale;
   for (int axis = 0; axis < 3; ++axis) job.center[axis] = treelets.frame.center[axis];
   set_bounds(job, treelets.nodes.front());
-  switch (best_isa()) {
+  job.rays = rays.data(), job.ray_count = rays.size();
+  job.cursors = cursors.data(), job.capacity = capacity;
+  job.lists = lists.data(), job.counts = counts.data(), job.queue = queue.get();
+  switch (isa) {
     case Isa::avx512: return avx512::walk(job);
     case Isa::avx2: return avx2::walk(job);
     case Isa::sse2: return sse2::walk(job);
   }
+}
+
+void walk(const Treelets& treelets, std::span<const Ray> rays, std::span<WalkCursor> cursors, std::uint32_t capacity,
+          std::span<TreeletEntry> lists, std::span<std::uint32_t> counts) {
+  walk_with(best_isa(), treelets, rays, cursors, capacity, lists, counts);
 }
 
 }  // namespace rayengine

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "accel/bvh.h"
+#include "accel/isa/isa.h"
 #include "accel/walk.h"
 
 namespace rayengine {
@@ -21,6 +22,10 @@ struct WalkJob {
   std::uint32_t* counts;
   std::uint64_t* queue;  ///< room for as many as the nodes have lanes, and one
 };
+
+/// walk() with a given instruction set, which the machine must have.
+void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std::span<WalkCursor> cursors,
+               std::uint32_t capacity, std::span<TreeletEntry> lists, std::span<std::uint32_t> counts);
 
 namespace sse2 {
 void walk(const WalkJob& job);

@@ -69,7 +69,7 @@ static inline bool to_local(const WalkJob& job, const Ray& ray, LocalRay& local)
   const double norm = normaliser(longest);
   double o[3] = {(ray.origin.x - job.center[0]) * job.scale, (ray.origin.y - job.center[1]) * job.scale,
                  (ray.origin.z - job.center[2]) * job.scale};
-  const double slack = float_slack + double_slack * largest(o);
+  double slack = float_slack + double_slack * largest(o);
 
   // Two factors of moderate size, as their product may overflow.
   const double longer = job.scale, shorter = prescale * norm;
@@ -80,8 +80,11 @@ static inline bool to_local(const WalkJob& job, const Ray& ray, LocalRay& local)
   }
   if (!(enter <= leave)) return false;
 
+  // From so far that double cannot place the ray in the scene: it meets all of it.
+  const bool lost = slack > 1;
+  if (lost) slack = 4;
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = o[axis] + enter * d[axis];
+    const double at = lost ? 0 : o[axis] + enter * d[axis];
     const float rounded = static_cast<float>(d[axis]);
     const float inverse = 1 / (absolute(rounded) < least ? __builtin_copysignf(least, rounded) : rounded);
     const double away = inverse > 0 ? slack : -slack;
