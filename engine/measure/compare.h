@@ -26,8 +26,9 @@ struct Comparison {
   std::vector<std::size_t> first;  ///< indices of the first rays that are beyond bounds
 };
 
-/// Compares closest hits. `oracle` answers are taken as exact; rays that differ are asked again, moved by the tracer's
-/// rounding (Limits) in eight directions across the ray, to see whether the difference is one that rounding explains.
+/// Compares closest hits. `oracle` answers are taken as exact; rays that differ are asked again, shifted and turned by the
+/// tracer's rounding (rounding_bound) in eight directions across the ray, and with their intervals moved, to see whether the
+/// difference is one that rounding explains. Where a hit states its own error, its t must be within that.
 Comparison compare(Tracer& tracer, Tracer& oracle, const Geometry& geometry, std::span<const Ray> rays, RayClass ray_class);
 
 }  // namespace rayengine
