@@ -51,7 +51,7 @@ fs::path temporary_name(const fs::path& file) {
 
 }  // namespace
 
-void check_file_writable(const fs::path& file) {
+void check_output(const fs::path& file) {
   if (file.filename().empty() || fs::is_directory(file)) fail(file, EISDIR);
   const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
   if (!fs::is_directory(folder)) fail(file, fs::exists(folder) ? ENOTDIR : ENOENT);
@@ -63,13 +63,13 @@ void check_file_writable(const fs::path& file) {
 
 AtomicFile::AtomicFile(const fs::path& file)
     : file_(target(file)), temporary_(is_special(file_) ? file_ : temporary_name(file_)), in_place_(is_special(file_)) {
-  check_file_writable(file);
+  check_output(file);
   if (!in_place_) enlist(temporary_.c_str());
   stream_.open(temporary_, std::ios::binary);
   if (!stream_) {
     const int error = errno;
     strike(temporary_.c_str());
-    fail(file, error);
+    rayengine::fail(file, error);
   }
 }
 
@@ -80,14 +80,21 @@ AtomicFile::~AtomicFile() {
   strike(temporary_.c_str());
 }
 
+void AtomicFile::fail() const { rayengine::fail(file_, errno ? errno : ENOSPC); }
+
+void AtomicFile::write(const void* data, std::size_t size) {
+  errno = 0;
+  if (!stream_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size))) fail();
+}
+
 void AtomicFile::commit() {
   errno = 0;
   stream_.close();
-  if (!stream_) fail(file_, errno ? errno : ENOSPC);
+  if (!stream_) fail();
   if (in_place_) return;
   std::error_code error;
   fs::rename(temporary_, file_, error);
-  if (error) fail(file_, error.value());
+  if (error) rayengine::fail(file_, error.value());
   strike(temporary_.c_str());
   committed_ = true;
 }

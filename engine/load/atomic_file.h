@@ -2,11 +2,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 namespace rayengine {
 
 /// Throws Error when `file` cannot be written: to be called before the work, so that it is not lost.
-void check_file_writable(const std::filesystem::path& file);
+void check_output(const std::filesystem::path& file);
 
 /// A file that gets its name only when it is complete: written under a temporary name beside it, and renamed. What is
 /// there already and no plain file, as /dev/stdout, is written to directly.
@@ -19,14 +20,16 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Where to write: by stream, or by name for writers that open files themselves. It has the extension of the file.
-  std::ostream& stream() { return stream_; }
-  const std::filesystem::path& temporary() const { return temporary_; }
+  /// Appends. Throws Error, on a full disk for one.
+  void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Closes and renames. Throws Error when something was not written, as on a full disk.
+  /// Ends the writing and gives the file its name. Throws Error.
   void commit();
 
  private:
+  [[noreturn]] void fail() const;
+
   std::filesystem::path file_, temporary_;
   std::ofstream stream_;
   bool in_place_, committed_ = false;
