@@ -45,7 +45,8 @@ fs::path target(const fs::path& file) {
 
 fs::path temporary_name(const fs::path& file) {
   static std::atomic<int> count = 0;
-  const std::string name = "." + file.stem().string() + "." + std::to_string(getpid()) + "." + std::to_string(count++);
+  std::string name = ".";
+  name += file.stem().string() + "." + std::to_string(getpid()) + "." + std::to_string(count++);
   return file.parent_path() / (name + file.extension().string());
 }
 
