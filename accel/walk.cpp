@@ -29,6 +29,7 @@ void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std
   WalkJob job{};
   job.nodes = treelets.nodes.data();
   job.scale = treelets.frame.scale;
+  job.inverse_scale = 1 / job.scale;
   for (int axis = 0; axis < 3; ++axis) job.center[axis] = treelets.frame.center[axis];
   set_bounds(job, treelets.nodes.front());
   job.rays = rays.data(), job.ray_count = rays.size();

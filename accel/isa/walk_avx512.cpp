@@ -4,6 +4,8 @@
 
 namespace rayengine::avx512 {
 
+typedef double reals __attribute__((vector_size(64)));  // rays that are taken to the local frame at once
+
 using lanes = __m256;
 static inline lanes load(const float* p) { return _mm256_load_ps(p); }
 static inline void store(float* p, lanes a) { _mm256_store_ps(p, a); }

@@ -12,8 +12,8 @@ namespace rayengine {
 /// A call of walk(), in the plain types that code built for several instruction sets may touch.
 struct WalkJob {
   const WideNode* nodes;
-  double center[3], scale;    ///< of the local frame
-  double lower[3], upper[3];  ///< bounds of all nodes, in the local frame
+  double center[3], scale, inverse_scale;  ///< of the local frame
+  double lower[3], upper[3];               ///< bounds of all nodes, in the local frame
   const Ray* rays;
   std::size_t ray_count;
   WalkCursor* cursors;

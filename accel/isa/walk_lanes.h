@@ -13,102 +13,128 @@ constexpr double float_slack = 10 * 0x1p-24;
 constexpr double double_slack = 0x1p-49;
 constexpr float least = 0x1p-30f;
 
-/// A ray in the local frame: the point at parameter t0 + s of the walk is origin + s * direction, 0 <= s <= length.
-struct LocalRay {
-  float near_origin[3], far_origin[3];  ///< moved away from the nearer and the farther plane, times `inverse`
-  float inverse[3];                     ///< of the direction
-  unsigned near_side[3];                ///< which plane of a slab is met first
-  float length;
-  double t0, shorter, longer;  ///< the ray's t is (t0 + s) * shorter / longer
+typedef float floats __attribute__((vector_size(sizeof(reals) / 2)));
+typedef long long integers __attribute__((vector_size(sizeof(reals))));
+constexpr int packet = sizeof(reals) / sizeof(double);
+
+/// Rays in the local frame, side by side: the point at parameter t0 + s of the walk is origin + s * direction,
+/// 0 <= s <= length. The ray's t is (t0 + s) / scale / stride, scale that of the frame.
+struct alignas(64) LocalRays {
+  float near_origin[3][packet],
+      far_origin[3][packet];  ///< moved away from the nearer and the farther plane, times `inverse`
+  float inverse[3][packet];   ///< of the direction
+  float length[packet];
+  double t0[packet], stride[packet];
+  long long alive[packet];  ///< 0 when the ray is invalid or passes the scene by
 };
 
-static inline double absolute(double x) { return x < 0 ? -x : x; }
-static inline double largest(const double* v) {
-  const double a = absolute(v[0]), b = absolute(v[1]), c = absolute(v[2]);
-  const double ab = a > b ? a : b;
-  return ab > c ? ab : c;
+template <class V>
+static inline V greater(V a, V b) {
+  return a > b ? a : b;
 }
-
-/// The power of two that takes a positive double to [1, 2).
-static inline double normaliser(double x) {
-  unsigned long long bits;
-  __builtin_memcpy(&bits, &x, sizeof bits);
-  bits = (2046 - (bits >> 52)) << 52;
-  double result;
-  __builtin_memcpy(&result, &bits, sizeof result);
-  return result;
+template <class V>
+static inline V lesser(V a, V b) {
+  return a < b ? a : b;
 }
-
-static inline bool is_finite(const Ray& r) {
-  return (r.origin.x * 0 + r.origin.y * 0) + (r.origin.z * 0 + r.direction.x * 0) +
-             (r.direction.y * 0 + r.direction.z * 0) ==
-         0;
+static inline reals absolute(reals x) { return (reals)((integers)x & 0x7FFFFFFFFFFFFFFF); }
+static inline reals with_sign_of(reals x, reals sign) {
+  return (reals)((integers)x | ((integers)sign & ~0x7FFFFFFFFFFFFFFF));
 }
+static inline reals largest(const reals* v) { return greater(greater(absolute(v[0]), absolute(v[1])), absolute(v[2])); }
 
-/// Clips [enter, leave] to where o + t d, |d| >= 1, lies between two planes. No quotient is NaN: directions are kept
-/// from zero.
-static inline void clip(double lower, double upper, double o, double d, double& enter, double& leave) {
-  const double tiny = 0x1p-900;
-  const double safe = absolute(d) < tiny ? __builtin_copysign(tiny, d) : d;
-  const double a = (lower - o) / safe, b = (upper - o) / safe;
-  const double near = a < b ? a : b, far = a < b ? b : a;
-  enter = near > enter ? near : enter;
-  leave = far < leave ? far : leave;
-}
+/// The largest power of two not above a normal positive number, and its inverse.
+static inline reals power_below(reals x) { return (reals)((integers)x & (0x7FFll << 52)); }
+static inline reals inverse_power(reals power) { return (reals)((2046ll << 52) - (integers)power); }
 
-/// False when the ray is invalid or passes the scene by.
-static inline bool to_local(const WalkJob& job, const Ray& ray, LocalRay& local) {
-  double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
-  double longest = largest(d), prescale = 1;
-  if (!is_finite(ray) || !(longest > 0) || !(ray.tmin <= ray.tmax)) return false;
-  if (__builtin_expect(longest < 0x1p-1000 || longest > 0x1p1000, 0)) {
-    prescale = longest < 1 ? 0x1p500 : 0x1p-500;
-    for (double& x : d) x *= prescale;
-    longest *= prescale;
+/// The eight numbers of each ray, from rows to columns; rows past the last repeat it.
+static inline void gather(const Ray* rays, std::size_t count, reals* columns) {
+  double numbers[8][packet];
+  for (std::size_t k = 0; k < packet; ++k) {
+    const auto* row = reinterpret_cast<const double*>(rays + (k < count ? k : count - 1));
+    for (int i = 0; i < 8; ++i) numbers[i][k] = row[i];
   }
-  const double norm = normaliser(longest);
-  double o[3] = {(ray.origin.x - job.center[0]) * job.scale, (ray.origin.y - job.center[1]) * job.scale,
-                 (ray.origin.z - job.center[2]) * job.scale};
-  double slack = float_slack + double_slack * largest(o);
+  __builtin_memcpy(columns, numbers, sizeof numbers);
+}
 
-  // Two factors of moderate size, as their product may overflow.
-  const double longer = job.scale, shorter = prescale * norm;
-  double enter = ray.tmin * longer / shorter, leave = ray.tmax * longer / shorter;
+/// Clips [enter, leave] to where o + t d lies between two planes. No quotient is NaN: directions are kept from zero.
+static inline void clip(reals lower, reals upper, reals o, reals d, reals& enter, reals& leave) {
+  const reals tiny = reals{} + 0x1p-900;
+  const reals safe = absolute(d) < tiny ? with_sign_of(tiny, d) : d;
+  const reals a = (lower - o) / safe, b = (upper - o) / safe;
+  enter = greater(lesser(a, b), enter);
+  leave = lesser(greater(a, b), leave);
+}
+
+static inline void store(float* to, reals value) {
+  const floats rounded = __builtin_convertvector(value, floats);
+  __builtin_memcpy(to, &rounded, sizeof rounded);
+}
+
+/// Takes up to `packet` rays to the local frame. Branch-free: what rays do here is not to be predicted.
+static inline void to_local(const WalkJob& job, const Ray* rays, std::size_t count, LocalRays& local) {
+  reals column[8];
+  gather(rays, count, column);
+  const reals *origin = column, *direction = column + 4, tmin = column[3], tmax = column[7];
+  const reals nothing =
+      (origin[0] * 0 + origin[1] * 0 + origin[2] * 0) + (direction[0] * 0 + direction[1] * 0 + direction[2] * 0);
+  const integers valid = (nothing == 0) & (largest(direction) > 0) & (tmin <= tmax);
+
+  // First to a range whose powers of two have inverses, then to a largest component in [1, 2).
+  const reals length = largest(direction);
+  const reals prescale = length < 0x1p-1000 ? reals{} + 0x1p500 : length > 0x1p1000 ? reals{} + 0x1p-500 : reals{} + 1;
+  const reals power = power_below(length * prescale);
+  const reals stride = power * inverse_power(prescale);
+  reals o[3], d[3];
   for (int axis = 0; axis < 3; ++axis) {
-    d[axis] *= norm;
+    o[axis] = (origin[axis] - job.center[axis]) * job.scale;
+    d[axis] = direction[axis] * prescale * inverse_power(power);
+  }
+  const reals slack = float_slack + double_slack * largest(o);
+  reals enter = tmin * job.scale * stride, leave = tmax * job.scale * stride;
+  for (int axis = 0; axis < 3; ++axis)
     clip(job.lower[axis] - slack, job.upper[axis] + slack, o[axis], d[axis], enter, leave);
-  }
-  if (!(enter <= leave)) return false;
 
-  // From so far that double cannot place the ray in the scene: it meets all of it.
-  const bool lost = slack > 1;
-  if (lost) slack = 4;
+  // From so far that double cannot place the ray in the scene, it meets all of it.
+  const integers lost = slack > 1;
+  const reals reach = lost ? reals{} + 4 : slack;
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = lost ? 0 : o[axis] + enter * d[axis];
-    const float rounded = static_cast<float>(d[axis]);
-    const float inverse = 1 / (absolute(rounded) < least ? __builtin_copysignf(least, rounded) : rounded);
-    const double away = inverse > 0 ? slack : -slack;
-    local.inverse[axis] = inverse;
-    local.near_origin[axis] = static_cast<float>(at + away) * inverse;
-    local.far_origin[axis] = static_cast<float>(at - away) * inverse;
-    local.near_side[axis] = inverse > 0 ? 0 : 1;
+    const reals at = lost ? reals{} : o[axis] + enter * d[axis];
+    const reals inverse = 1 / (absolute(d[axis]) < least ? with_sign_of(reals{} + least, d[axis]) : d[axis]);
+    const reals away = with_sign_of(reach, inverse);
+    store(local.inverse[axis], inverse);
+    store(local.near_origin[axis], (at + away) * inverse);
+    store(local.far_origin[axis], (at - away) * inverse);
   }
-  local.length = static_cast<float>((leave - enter) * (1 + 0x1p-20));
-  local.t0 = enter;
-  local.shorter = shorter;
-  local.longer = longer;
-  return true;
+  store(local.length, (leave - enter) * (1 + 0x1p-20));
+  __builtin_memcpy(local.t0, &enter, sizeof enter);
+  __builtin_memcpy(local.stride, &stride, sizeof stride);
+  const integers alive = valid & (enter <= leave);
+  __builtin_memcpy(local.alive, &alive, sizeof alive);
 }
+
+/// One of LocalRays, ready to be tested against nodes.
+struct LocalRay {
+  lanes near_origin[3], far_origin[3], inverse[3], length;
+  unsigned near_side[3];  ///< which plane of a slab is met first
+
+  LocalRay(const LocalRays& rays, int k) : length(all(rays.length[k])) {
+    for (int axis = 0; axis < 3; ++axis) {
+      near_origin[axis] = all(rays.near_origin[axis][k]);
+      far_origin[axis] = all(rays.far_origin[axis][k]);
+      inverse[axis] = all(rays.inverse[axis][k]);
+      near_side[axis] = rays.inverse[axis][k] < 0;
+    }
+  }
+};
 
 /// What a ray meets of a node: a bit per lane, and where.
 static inline unsigned meet(const WideNode& node, const LocalRay& ray, lanes after, float* entries) {
-  lanes enter = all(0), leave = all(ray.length);
+  lanes enter = all(0), leave = ray.length;
   for (int axis = 0; axis < 3; ++axis) {
     const float* near = node.planes[axis][ray.near_side[axis]];
     const float* far = node.planes[axis][1 - ray.near_side[axis]];
-    const lanes inverse = all(ray.inverse[axis]);
-    enter = larger(multiply_subtract(load(near), inverse, all(ray.near_origin[axis])), enter);
-    leave = smaller(multiply_subtract(load(far), inverse, all(ray.far_origin[axis])), leave);
+    enter = larger(multiply_subtract(load(near), ray.inverse[axis], ray.near_origin[axis]), enter);
+    leave = smaller(multiply_subtract(load(far), ray.inverse[axis], ray.far_origin[axis]), leave);
   }
   store(entries, enter);
   return not_above(larger(enter, after), leave);
@@ -135,15 +161,12 @@ static inline std::uint64_t* insert(std::uint64_t* end, std::uint64_t key) {
   return end + 1;
 }
 
-/// Lists the next leaves of one ray; moves its cursor.
-static inline std::uint32_t walk_one(const WalkJob& job, const Ray& ray, WalkCursor& cursor, TreeletEntry* list) {
-  LocalRay local;
+/// Lists the next leaves of ray k of a packet; moves its cursor.
+static inline std::uint32_t walk_one(const WalkJob& job, const LocalRays& rays, int k, double tmin, WalkCursor& cursor,
+                                     TreeletEntry* list) {
   std::uint32_t count = 0;
-  if (cursor.finished() || !to_local(job, ray, local)) {
-    cursor.last = WalkCursor::end;
-    return 0;
-  }
   const std::uint64_t last = cursor.last;
+  const LocalRay local(rays, k);
   const lanes after = all(entry_of(last));
   job.queue[0] = WalkCursor::end;  // above all keys: where an insertion stops
   std::uint64_t* const begin = job.queue + 1;
@@ -153,8 +176,8 @@ static inline std::uint32_t walk_one(const WalkJob& job, const Ray& ray, WalkCur
     const std::uint32_t child = static_cast<std::uint32_t>(key);
     if (child & WideNode::leaf) {
       if (key <= last) continue;
-      const double t = (local.t0 + entry_of(key)) * local.shorter / local.longer;
-      list[count++] = {t > ray.tmin ? t : ray.tmin, child ^ WideNode::leaf};
+      const double t = (rays.t0[k] + entry_of(key)) * job.inverse_scale / rays.stride[k];
+      list[count++] = {t > tmin ? t : tmin, child ^ WideNode::leaf};
       cursor.last = key;
       if (count == job.capacity) return count;
       continue;
@@ -171,6 +194,18 @@ static inline std::uint32_t walk_one(const WalkJob& job, const Ray& ray, WalkCur
 }
 
 void walk(const WalkJob& job) {
-  for (std::size_t i = 0; i < job.ray_count; ++i)
-    job.counts[i] = walk_one(job, job.rays[i], job.cursors[i], job.lists + i * job.capacity);
+  for (std::size_t first = 0; first < job.ray_count; first += packet) {
+    LocalRays local;
+    to_local(job, job.rays + first, job.ray_count - first, local);
+    for (std::size_t k = 0; k < packet && first + k < job.ray_count; ++k) {
+      const std::size_t i = first + k;
+      if (job.cursors[i].finished() || !local.alive[k]) {
+        job.cursors[i].last = WalkCursor::end;
+        job.counts[i] = 0;
+      } else {
+        job.counts[i] =
+            walk_one(job, local, static_cast<int>(k), job.rays[i].tmin, job.cursors[i], job.lists + i * job.capacity);
+      }
+    }
+  }
 }

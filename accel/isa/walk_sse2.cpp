@@ -4,6 +4,8 @@
 
 namespace rayengine::sse2 {
 
+typedef double reals __attribute__((vector_size(16)));  // rays that are taken to the local frame at once
+
 struct lanes {
   __m128 low, high;
 };
