@@ -35,15 +35,16 @@ glm::dvec3 gradient(const QuadricMatrix& m, const glm::dvec3& p) {
           m[2] * p.x + m[5] * p.y + m[7] * p.z + m[8]};
 }
 
-/// One of the clip planes, or a height between them; unbounded ones count as -1 and 1.
+/// One of the clip planes, or a height between them, where unbounded ones count as -1 and 1.
 double height(const Geometry& geometry, const Quadric& q, Random& random) {
   if (q.type == QuadricType::disk || q.type == QuadricType::plane) return 0;
   const bool general = q.type == QuadricType::general;
   const double below = general ? geometry.forms[q.form].box.lower.z : q.zmin;
   const double above = general ? geometry.forms[q.form].box.upper.z : q.zmax;
-  const double low = std::isfinite(below) ? below : -1, high = std::isfinite(above) ? above : 1;
   const std::size_t choice = random.below(4);
-  return choice == 0 ? low : choice == 1 ? high : random.between(low, high);
+  if (choice == 0 && std::isfinite(below)) return below;
+  if (choice == 1 && std::isfinite(above)) return above;
+  return random.between(std::isfinite(below) ? below : -1, std::isfinite(above) ? above : 1);
 }
 
 /// Where a random line at height z passes the surface, or a random point when it does not.

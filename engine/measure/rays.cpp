@@ -69,7 +69,8 @@ std::vector<Ray> bounce_rays(const Geometry& geometry, std::span<const Ray> rays
     if (!hits[i].hit()) continue;
     const Leave from = leave(geometry, rays[i], hits[i]);
     // The normal plus a point of the unit sphere is distributed by the cosine; the two together are never far below it.
-    const glm::dvec3 direction = from.normal + (1 - 0x1p-20) * Random(seed, i).direction();
+    // The seed is turned over lest the numbers be those that random_rays made `rays` of.
+    const glm::dvec3 direction = from.normal + (1 - 0x1p-20) * Random(~seed, i).direction();
     result.push_back({from.from.towards(from.normal), 0, glm::normalize(direction), infinity});
   }
   return result;
