@@ -17,7 +17,7 @@ void expect_error(Action&& action, const std::string& where, const std::string& 
   } catch (const Error& error) {
     const std::string line = error.what();
     EXPECT_NE(line.find(where), std::string::npos) << line;
-    EXPECT_NE(line.find(what), std::string::npos) << line;
+    EXPECT_NE(line.find(what), std::string::npos) << line << "\ndoes not say: " << what;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
   }
 }
