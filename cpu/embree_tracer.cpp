@@ -85,7 +85,9 @@ void for_ranges(std::size_t count, Work&& work) {
 template <class EmbreeRays>
 void EmbreeTracer::begin(Packet<EmbreeRays>& packet, RayClass ray_class) const {
   rtcInitIntersectContext(&packet.context.embree);
-  if (is_coherent(ray_class)) packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  // Embree 3.13 can hang in its coherent occlusion test when the scene holds instances.
+  if (is_coherent(ray_class) && scene_.instances().empty())
+    packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   packet.context.instances = &scene_.instances();
 }
 

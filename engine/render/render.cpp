@@ -1,6 +1,7 @@
 #include "engine/render/render.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -70,6 +71,10 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
   const PixelSampler sampler(options.spp);
   RenderResult result{Image(scene.camera.size.x, scene.camera.size.y, channels_for(options)), {}};
 
+  // More threads than cores are given too, when asked for.
+  const std::size_t workers = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const tbb::global_control allowance(tbb::global_control::max_allowed_parallelism,
+                                      std::max(workers, static_cast<std::size_t>(std::max(options.threads, 1))));
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   const Tiling tiling(scene.camera.size, options.spp,
                       wave_size(scene.camera.size, options.spp, picture.limits, arena.max_concurrency()));
