@@ -1,20 +1,11 @@
 #include "engine/load/load.h"
 
-#include <algorithm>
-#include <cctype>
-
+#include "accel/tracer.h"
 #include "engine/load/complete.h"
-#include "engine/load/place.h"
+#include "engine/load/text.h"
 
 namespace rayengine {
 namespace {
-
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 Scene scene_of_mesh(const std::filesystem::path& file) {
   Scene scene;
@@ -32,8 +23,8 @@ Scene dispatch(const std::filesystem::path& file) {
   if (extension == ".gltf" || extension == ".glb") return load_gltf(file);
   for (const char* known : {".obj", ".ply", ".stl", ".off"})
     if (extension == known) return scene_of_mesh(file);
-  throw Error("unknown kind of scene " + in_quotes(file.filename().string()) +
-              ": name a .json, .nff, .gltf, .glb, .obj, .ply, .stl or .off file");
+  throw Error(file.string() +
+              ": is no kind of scene that can be read; use .json, .nff, .gltf, .glb, .obj, .ply, .stl or .off");
 }
 
 }  // namespace
@@ -41,11 +32,11 @@ Scene dispatch(const std::filesystem::path& file) {
 Scene load_scene(const std::filesystem::path& file) {
   Scene scene = dispatch(file);
   if (scene.geometry->objects.empty())
-    throw Error("there is nothing to see in " + file.string() + ": a scene needs an object");
+    throw Error(file.string() + ": there is nothing to see; a scene needs an object");
   // What Embree takes as finite; beyond it single precision has no room left for squares.
   constexpr double farthest = 1e18;
   if (scene.geometry->bounds.finite() && scene.geometry->bounds.extent() > farthest)
-    throw Error(file.string() + " reaches beyond 1e18: scale it down");
+    throw Error(file.string() + ": reaches farther than 1e18; scale it down");
   return scene;
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -14,8 +13,7 @@ namespace rayengine {
 namespace {
 
 FaceList read_faces(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_extension(file);
   if (extension == ".obj") return read_obj(read_file(file), file);
   if (extension == ".ply") return read_ply(read_file(file), file);
   if (extension == ".stl") return read_stl(read_file(file), file);

@@ -1,24 +1,25 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "engine/load/complete.h"
 #include "engine/load/load.h"
 #include "engine/load/nff_cone.h"
-#include "engine/load/nff_tokens.h"
+#include "engine/load/place.h"
 #include "engine/load/polygon.h"
+#include "engine/load/text.h"
 
 // Eric Haines' Neutral File Format, after NFF.TXT 3.9. Surfaces are two-sided here.
 namespace rayengine {
 namespace {
 
-glm::dvec3 vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
 class NffReader {
  public:
-  explicit NffReader(const std::filesystem::path& file) : in_(file) {}
+  explicit NffReader(const std::filesystem::path& file) : file_(file), data_(read_file(file)), in_(data_, file, '#') {}
 
   Scene read() {
-    while (!in_.at_end()) entity();
+    while (in_.more()) entity();
     if (scene_.materials.empty()) scene_.materials.emplace_back();
     for (const std::size_t i : lights_without_color_)
       scene_.lights[i].color = glm::vec3(1 / std::sqrt(static_cast<float>(scene_.lights.size())));
@@ -29,8 +30,8 @@ class NffReader {
 
  private:
   void entity() {
-    const std::string_view name = in_.take();
-    const Place place = in_.last_place();
+    const std::string_view name = in_.word();
+    const Place place{file_, in_.line()};
     if (name == "v") return viewpoint(place);
     if (name == "b") return background();
     if (name == "l") return light();
@@ -39,35 +40,42 @@ class NffReader {
     if (name == "c") return cone(place);
     if (name == "p" || name == "pp") return polygon(place, name == "pp");
     // How finely others should facet their curves; ours are exact.
-    if (name == "tess") return void(in_.integer("a tess"));
+    if (name == "tess") return void(number());
     if (name == "tet" || name == "hex" || name == "oct" || name == "dod" || name == "ico")
-      fail(place, in_quotes(name) + " is not of standard NFF: give its faces as polygons (p)");
-    fail(place, "unknown entity " + in_quotes(name) + ": NFF has v, b, l, f, s, c, p and pp");
+      fail(place, quoted(name) + " is not of standard NFF; give its faces as polygons (p)");
+    fail(place, quoted(name) + " is no entity of NFF; use v, b, l, f, s, c, p or pp");
   }
 
-  glm::dvec3 point(std::string_view what) { return vector(in_.numbers<3>(what)); }
-
-  glm::vec3 color(std::string_view what) {
-    const glm::vec3 rgb(point(what));
-    for (int i = 0; i < 3; ++i)
-      if (!(rgb[i] >= 0 && std::isfinite(rgb[i])))
-        fail(in_.last_place(), "a colour is out of range in " + std::string(what));
-    return rgb;
+  double number() { return in_.to_finite(in_.word()); }
+  glm::dvec3 point() {
+    const double x = number(), y = number(), z = number();
+    return {x, y, z};
   }
+
+  /// The word that comes next, left in its place; empty at the end of the file.
+  std::string_view peek() const {
+    Text ahead = in_;
+    return ahead.more() ? ahead.word() : std::string_view();
+  }
+  bool number_is_next() const { return peek().find_first_of("0123456789") <= 2; }  // behind a sign and a point at most
 
   float factor() {
-    const auto value = static_cast<float>(in_.number("a material"));
-    if (!(value >= 0 && std::isfinite(value))) fail(in_.last_place(), "a factor is out of range in a material");
+    const auto value = static_cast<float>(number());
+    if (!(value >= 0 && std::isfinite(value))) in_.fail("a factor is negative or too large");
     return value;
+  }
+  glm::vec3 color() {
+    const float r = factor(), g = factor(), b = factor();
+    return {r, g, b};
   }
 
   void viewpoint(const Place& place) {
-    if (has_camera_) fail(place, "a second viewpoint: keep one");
+    if (has_camera_) fail(place, "a second viewpoint; keep one");
     has_camera_ = true;
     Camera& camera = scene_.camera;
     bool from = false, at = false;
     for (;;) {
-      const std::string_view key = in_.peek();
+      const std::string_view key = peek();
       if (key == "from")
         from = true, camera.from = viewpoint_vector();
       else if (key == "at")
@@ -75,36 +83,35 @@ class NffReader {
       else if (key == "up")
         camera.up = viewpoint_vector();
       else if (key == "angle")
-        in_.take(), camera.fov = in_.number("a viewpoint's angle");
+        in_.word(), camera.fov = number();
       else if (key == "hither")
-        in_.take(), in_.number("a viewpoint's hither");  // nothing is cut off
+        in_.word(), number();  // nothing is cut off
       else if (key == "resolution")
-        resolution();
+        in_.word(), camera.size.x = side(), camera.size.y = side();
       else
         break;
     }
-    if (!from || !at) fail(place, "a viewpoint lacks 'from' or 'at': give both");
+    if (!from || !at) fail(place, "a viewpoint lacks 'from' or 'at'; give both");
     at_place(place, [&] { check(camera); });
   }
 
   glm::dvec3 viewpoint_vector() {
-    in_.take();
-    return point("a viewpoint");
+    in_.word();
+    return point();
   }
 
-  void resolution() {
-    in_.take();
-    const int width = in_.integer("a viewpoint's resolution");
-    scene_.camera.size = {width, in_.integer("a viewpoint's resolution")};
+  int side() {
+    const std::int64_t pixels = in_.to_integer(in_.word());
+    return static_cast<int>(std::clamp<std::int64_t>(pixels, 0, 1 << 30));  // judged with the rest of the camera
   }
 
-  void background() { scene_.background.color = color("a background"); }
+  void background() { scene_.background.color = color(); }
 
   void light() {
     Light light;
-    light.position = point("a light");
-    if (in_.next_is_number())
-      light.color = color("a light");
+    light.position = point();
+    if (number_is_next())
+      light.color = color();
     else
       lights_without_color_.push_back(scene_.lights.size());
     scene_.lights.push_back(light);
@@ -112,22 +119,23 @@ class NffReader {
 
   void material(const Place& place) {
     std::array<float, 8> f{};  // r g b Kd Ks Shine T ior
-    const glm::vec3 rgb = color("a material");
+    const glm::vec3 rgb = color();
     for (int i = 0; i < 3; ++i) f[i] = rgb[i];
     for (int i = 3; i < 7; ++i) f[i] = factor();
-    if (in_.next_is_number())
+    if (number_is_next())
       f[7] = factor();
     else if (f[6] > 0)
-      fail(place, "a transparent material has 7 numbers: give its index of refraction, the eighth");
+      fail(place, "a transparent material has 7 numbers; give its index of refraction, the eighth");
     skip_texture();
     current_ = index_of(f);
   }
 
+  /// Some files end `f` with the name of a picture.
   void skip_texture() {
-    if (!in_.next_is_on_the_same_line() || in_.peek().find('.') == std::string_view::npos) return;
-    const std::string name = in_quotes(in_.take());
-    scene_.notes.push_back("texture " + name + " is left out, " + in_.last_place().file.string() + ":" +
-                           std::to_string(in_.last_place().line));
+    if (!in_.more_on_line() || peek().find('.') == std::string_view::npos) return;
+    const std::string_view name = in_.word();
+    scene_.notes.push_back(file_.string() + ":" + std::to_string(in_.line()) + ": texture " + quoted(name) +
+                           " is left out");
   }
 
   std::uint32_t index_of(const std::array<float, 8>& f) {
@@ -161,17 +169,17 @@ class NffReader {
   }
 
   void sphere(const Place& place) {
-    const glm::dvec3 center = point("a sphere");
-    const double radius = std::abs(in_.number("a sphere"));
-    if (radius == 0) fail(place, "a sphere has no radius: give it one");
+    const glm::dvec3 center = point();
+    const double radius = std::abs(number());
+    if (radius == 0) fail(place, "a sphere has no radius; give it one");
     at_place(place, [&] { builder_.add(QuadricShape{}, current(), {glm::dmat3(radius), center}); });
   }
 
   void cone(const Place& place) {
-    const glm::dvec3 base = point("a cone");
-    const double base_radius = in_.number("a cone");
-    const glm::dvec3 apex = point("a cone");
-    const double apex_radius = in_.number("a cone");
+    const glm::dvec3 base = point();
+    const double base_radius = number();
+    const glm::dvec3 apex = point();
+    const double apex_radius = number();
     at_place(place, [&] {
       const PlacedQuadric placed = frustum(base, base_radius, apex, apex_radius);
       builder_.add(placed.shape, current(), placed.to_world);
@@ -179,14 +187,12 @@ class NffReader {
   }
 
   void polygon(const Place& place, bool has_normals) {
-    const std::string_view what = has_normals ? "a patch" : "a polygon";
-    const int count = in_.integer(what);
-    if (count < 3)
-      fail(in_.last_place(), std::string(what) + " has " + std::to_string(count) + " vertices: it needs at least 3");
+    const std::int64_t count = in_.to_integer(in_.word());
+    if (count < 3) fail(place, "a polygon has " + std::to_string(count) + " vertices; it needs at least 3");
     Mesh mesh;  // grows as vertices really come, whatever the count promises
-    for (int i = 0; i < count; ++i) {
-      mesh.positions.push_back(point(what));
-      if (has_normals) mesh.normals.emplace_back(point(what));
+    for (std::int64_t i = 0; i < count; ++i) {
+      mesh.positions.push_back(point());
+      if (has_normals) mesh.normals.emplace_back(point());
     }
     at_place(place, [&] {
       mesh.triangles = triangulate(mesh.positions);
@@ -194,7 +200,9 @@ class NffReader {
     });
   }
 
-  NffTokens in_;
+  const std::filesystem::path& file_;
+  std::string data_;
+  Text in_;
   Scene scene_{.camera = {}, .background = {}, .lights = {}, .materials = {}, .geometry = {}, .notes = {}};
   GeometryBuilder builder_;
   bool has_camera_ = false;

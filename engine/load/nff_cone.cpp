@@ -37,13 +37,13 @@ QuadricShape near_cylinder(double slope) {
 }  // namespace
 
 PlacedQuadric frustum(const glm::dvec3& base, double base_radius, const glm::dvec3& apex, double apex_radius) {
-  if (base_radius * apex_radius < 0) throw Error("the radii of a cone have different signs: give both the same");
-  if (base_radius == 0 && apex_radius == 0) throw Error("a cone has no radius: give it one");
+  if (base_radius * apex_radius < 0) throw Error("the radii of a cone have different signs; give both the same");
+  if (base_radius == 0 && apex_radius == 0) throw Error("a cone has no radius; give it one");
   glm::dvec3 wide = base, narrow = apex;
   double r = std::abs(base_radius), s = std::abs(apex_radius);
   if (r < s) std::swap(wide, narrow), std::swap(r, s);
   const glm::dvec3 axis = narrow - wide;
-  if (!(glm::length(axis) > 0)) throw Error("a cone has no height: its two ends must differ");
+  if (!(glm::length(axis) > 0)) throw Error("a cone has no height; its two ends must differ");
   if (r == s) return {shape_of(QuadricType::cylinder), {frame(axis, r), wide}};
 
   // The apex is this many heights from the wide end: as many times larger are the numbers that the unit cone works

@@ -141,7 +141,7 @@ std::vector<glm::uvec3> triangulate(std::span<const glm::dvec3> polygon) {
   if (is_convex_outline(points)) return fan(polygon.size());
   if (polygon.size() > largest_concave_polygon)
     throw Error("a polygon that is not convex has " + std::to_string(polygon.size()) +
-                " vertices: cut it into pieces of at most " + std::to_string(largest_concave_polygon));
+                " vertices; cut it into pieces of at most " + std::to_string(largest_concave_polygon));
   return EarClipper(points).clip();
 }
 

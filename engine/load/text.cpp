@@ -1,5 +1,7 @@
 #include "engine/load/text.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -32,6 +34,12 @@ std::string read_file(const std::filesystem::path& file) {
   if (error || !stream.read(data.data(), static_cast<std::streamsize>(data.size())))
     throw Error(file.string() + ": cannot be read (" + std::strerror(errno ? errno : EIO) + "); check its permissions");
   return data;
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension;
 }
 
 bool Text::continues() const {

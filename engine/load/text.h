@@ -10,6 +10,9 @@ namespace rayengine {
 /// The whole of a regular file. Throws Error when it is missing, a folder, a device or cannot be read.
 std::string read_file(const std::filesystem::path& file);
 
+/// The extension in lower case, with its dot.
+std::string lower_extension(const std::filesystem::path& file);
+
 /// Reads a text file held in memory word by word and knows which line it is on. Words are separated by white space and
 /// by a backslash at the end of a line. Every failure is an Error that begins with file:line.
 class Text {

@@ -58,8 +58,8 @@ struct Scene {
   std::vector<std::string> notes;
 };
 
-/// A camera that frames `bounds` from a corner above; unbounded sides count as the unit box.
-Camera framing_camera(const Box& bounds);
+/// Moves a camera to where it frames `bounds` from a corner above; unbounded sides count as the unit box.
+Camera framing_camera(const Box& bounds, Camera camera = {});
 
 /// A light at the eye, for scenes without any.
 Light headlight(const Camera& camera);

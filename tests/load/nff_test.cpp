@@ -5,33 +5,22 @@
 #include "engine/load/nff_cone.h"
 #include "tests/data.h"
 #include "tests/load/loading.h"
-#include "tests/temporary.h"
 
 namespace rayengine {
 namespace {
 
 constexpr const char* a_view = "v from 0 0 5 at 0 0 0 up 0 1 0 angle 40 hither 0 resolution 64 32\n";
 
-class Nff : public testing::Test {
+class Nff : public test::LoaderTest {
  protected:
-  Scene load(std::string_view text) { return load_nff(folder_.write("scene.nff", text)); }
-
-  /// The message without the folder in front of the file's name.
-  std::string error(std::string_view text) {
-    std::string message = test::error_of([&] { load(text); });
-    const std::string folder = folder_.path().string() + "/";
-    for (std::size_t at; (at = message.find(folder)) != std::string::npos;) message.erase(at, folder.size());
-    return message;
-  }
-
-  test::TemporaryFolder folder_;
+  Nff() : LoaderTest(load_nff, "scene.nff") {}
 };
 
 TEST_F(Nff, IsAStreamOfWordsNotOfLines) {
   const Scene scene =
       load(std::string("# a comment\n") + a_view +
            "b .1 .2 .3 l 1 2 3 l 4 5 6 1 0.5 0.25 # another\nf 1 0\n0 .5 .25 10 0 0\ns 0 0 0\n2 c 0 0 0 1\n\n0 0 1 "
-           "+1 p 3 0 0 0 1 0 0 0 1 0#end");
+           "+1 p 3 0 0 0 1 0 0 0 1 0 #end");
   EXPECT_EQ(scene.background.color, glm::vec3(.1f, .2f, .3f));
   EXPECT_EQ(scene.camera.size, glm::ivec2(64, 32));
   EXPECT_EQ(scene.camera.from, glm::dvec3(0, 0, 5));
@@ -92,14 +81,13 @@ TEST_F(Nff, AWordOfHowFinelyToFacetChangesNothing) {
 TEST_F(Nff, ASevenNumberMaterialIsPlainWhenOpaque) {
   EXPECT_EQ(load("f 1 1 1 .5 .5 10 0 s 0 0 0 1").materials[0].reflect, .5f);
   EXPECT_EQ(error("s 0 0 0 1\nf 1 1 1 .5 .5 10 .5\ns 0 0 0 1"),
-            "a transparent material has 7 numbers, scene.nff:2: give its index of refraction, the eighth");
+            "scene.nff:2: a transparent material has 7 numbers; give its index of refraction, the eighth");
 }
 
 TEST_F(Nff, ATextureIsLeftOutAndSaidSo) {
   const Scene scene = load(std::string(a_view) + "l 1 1 1 f 1 1 1 1 0 0 0 1 wood.jpg\ns 0 0 0 1");
   ASSERT_EQ(scene.notes.size(), 1u);
-  EXPECT_EQ(scene.notes[0].find("texture 'wood.jpg' is left out"), 0u);
-  EXPECT_NE(scene.notes[0].find("scene.nff:2"), std::string::npos);
+  EXPECT_TRUE(scene.notes[0].ends_with("scene.nff:2: texture 'wood.jpg' is left out")) << scene.notes[0];
 }
 
 TEST_F(Nff, PatchesKeepTheirNormals) {
@@ -163,45 +151,45 @@ TEST(NffCone, StandsBetweenItsCircles) {
 }
 
 TEST_F(Nff, BadInputIsRefusedWithItsLine) {
-  EXPECT_EQ(error("s 0 0 0 1\nq 1 2 3"), "unknown entity 'q', scene.nff:2: NFF has v, b, l, f, s, c, p and pp");
-  EXPECT_EQ(error("\n\ns 0 0\nx 1"), "expected a number in a sphere, got 'x', scene.nff:4");
-  EXPECT_EQ(error("s 0 0 0 1x"), "expected a number in a sphere, got '1x', scene.nff:1");
-  EXPECT_EQ(error("s 0 0 0 nan"), "number 'nan' in a sphere is out of range, scene.nff:1");
-  EXPECT_EQ(error("s 0 0 -inf 1"), "number '-inf' in a sphere is out of range, scene.nff:1");
-  EXPECT_EQ(error("s 0 0 0 1e999"), "number '1e999' in a sphere is out of range, scene.nff:1");
-  EXPECT_EQ(error("s 0 0 0\n"), "the file ends within a sphere, scene.nff:1: it is cut short");
-  EXPECT_EQ(error("s 0 0 0 0"), "a sphere has no radius, scene.nff:1: give it one");
+  EXPECT_EQ(error("s 0 0 0 1\nq 1 2 3"), "scene.nff:2: 'q' is no entity of NFF; use v, b, l, f, s, c, p or pp");
+  EXPECT_EQ(error("\n\ns 0 0\nx 1"), "scene.nff:4: expected a number, found 'x'");
+  EXPECT_EQ(error("s 0 0 0 1x"), "scene.nff:1: expected a number, found '1x'");
+  EXPECT_EQ(error("s 0 0 0 nan"), "scene.nff:1: 'nan' is not a finite number");
+  EXPECT_EQ(error("s 0 0 -inf 1"), "scene.nff:1: '-inf' is not a finite number");
+  EXPECT_EQ(error("s 0 0 0 1e999"), "scene.nff:1: '1e999' is not a finite number");
+  EXPECT_EQ(error("s 0 0 0\n"), "scene.nff:2: the file ends too early; is it complete?");
+  EXPECT_EQ(error("s 0 0 0 0"), "scene.nff:1: a sphere has no radius; give it one");
   EXPECT_EQ(error("s 1e300 0 0 1e-300"),
-            "a transform is singular or not finite, scene.nff:1: it must map space one to one");
-  EXPECT_EQ(error("\nc 0 0 0 1 0 0 0 1"), "a cone has no height, scene.nff:2: its two ends must differ");
-  EXPECT_EQ(error("\nc 0 0 0 1 0 0 1 -1"), "the radii of a cone have different signs, scene.nff:2: give both the same");
-  EXPECT_EQ(error("\nc 0 0 0 0 0 0 1 0"), "a cone has no radius, scene.nff:2: give it one");
-  EXPECT_EQ(error("p 2 0 0 0 1 0 0"), "a polygon has 2 vertices, scene.nff:1: it needs at least 3");
-  EXPECT_EQ(error("p -7"), "a polygon has -7 vertices, scene.nff:1: it needs at least 3");
-  EXPECT_EQ(error("p 3.5"), "expected a whole number in a polygon, scene.nff:1");
-  EXPECT_EQ(error("p 999999999 0 0 0 1 0 0"), "the file ends within a polygon, scene.nff:1: it is cut short");
-  EXPECT_EQ(error("pp 9999999999"), "expected a whole number in a patch, scene.nff:1");
-  EXPECT_EQ(error("f 1 1 1 1 1 1"), "the file ends within a material, scene.nff:1: it is cut short");
-  EXPECT_EQ(error("f 1 1 1 -1 1 1 0 0"), "a factor is out of range in a material, scene.nff:1");
-  EXPECT_EQ(error("f 1 1 1 1 1 1 1e39 0"), "a factor is out of range in a material, scene.nff:1");
-  EXPECT_EQ(error("b 1 1 -1"), "a colour is out of range in a background, scene.nff:1");
-  EXPECT_EQ(error("f wood.jpg"), "expected a number in a material, got 'wood.jpg', scene.nff:1");
+            "scene.nff:1: a transform is singular or not finite: it must map space one to one");
+  EXPECT_EQ(error("\nc 0 0 0 1 0 0 0 1"), "scene.nff:2: a cone has no height; its two ends must differ");
+  EXPECT_EQ(error("\nc 0 0 0 1 0 0 1 -1"), "scene.nff:2: the radii of a cone have different signs; give both the same");
+  EXPECT_EQ(error("\nc 0 0 0 0 0 0 1 0"), "scene.nff:2: a cone has no radius; give it one");
+  EXPECT_EQ(error("p 2 0 0 0 1 0 0"), "scene.nff:1: a polygon has 2 vertices; it needs at least 3");
+  EXPECT_EQ(error("p -7"), "scene.nff:1: a polygon has -7 vertices; it needs at least 3");
+  EXPECT_EQ(error("p 3.5"), "scene.nff:1: expected a whole number, found '3.5'");
+  EXPECT_EQ(error("p 999999999 0 0 0 1 0 0"), "scene.nff:1: the file ends too early; is it complete?");
+  EXPECT_EQ(error("pp 99999999999999999999"), "scene.nff:1: expected a whole number, found '99999999999999999999'");
+  EXPECT_EQ(error("f 1 1 1 1 1 1"), "scene.nff:1: the file ends too early; is it complete?");
+  EXPECT_EQ(error("f 1 1 1 -1 1 1 0 0"), "scene.nff:1: a factor is negative or too large");
+  EXPECT_EQ(error("f 1 1 1 1 1 1 1e39 0"), "scene.nff:1: a factor is negative or too large");
+  EXPECT_EQ(error("b 1 1 -1"), "scene.nff:1: a factor is negative or too large");
+  EXPECT_EQ(error("f wood.jpg"), "scene.nff:1: expected a number, found 'wood.jpg'");
   EXPECT_EQ(error("s 0 0 0 1\ntet 0 0 0 1"),
-            "'tet' is not of standard NFF, scene.nff:2: give its faces as polygons (p)");
-  EXPECT_EQ(error("v\nfrom 0 0 1 up 0 1 0 angle 45"), "a viewpoint lacks 'from' or 'at', scene.nff:1: give both");
+            "scene.nff:2: 'tet' is not of standard NFF; give its faces as polygons (p)");
+  EXPECT_EQ(error("v\nfrom 0 0 1 up 0 1 0 angle 45"), "scene.nff:1: a viewpoint lacks 'from' or 'at'; give both");
   EXPECT_EQ(error("v from 0 0 1 at 0 0 1"),
-            "the camera stands where it looks, scene.nff:1: 'from' and 'at' must differ");
+            "scene.nff:1: the camera stands where it looks; 'from' and 'at' must differ");
   EXPECT_EQ(error("v from 0 0 1 at 0 0 0 up 0 0 2"),
-            "the camera's up is zero or along its view, scene.nff:1: turn it away");
+            "scene.nff:1: the camera's up is zero or along its view; turn it away");
   EXPECT_EQ(error("v from 0 0 1 at 0 0 0 up 0 1 0 angle 180"),
-            "the camera's angle is out of range, scene.nff:1: it must lie between 0 and 180 degrees");
+            "scene.nff:1: the camera's angle is out of range; it must lie between 0 and 180 degrees");
   EXPECT_EQ(error("v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 0 0"),
-            "the picture's size is out of range, scene.nff:1: each side takes 1 to 65536 pixels");
-  EXPECT_EQ(error(std::string(a_view) + a_view), "a second viewpoint, scene.nff:2: keep one");
+            "scene.nff:1: the picture's size is out of range; each side takes 1 to 65536 pixels");
+  EXPECT_EQ(error(std::string(a_view) + a_view), "scene.nff:2: a second viewpoint; keep one");
   EXPECT_EQ(error(std::string(100, 'x')),
-            "unknown entity '" + std::string(40, 'x') + "...', scene.nff:1: NFF has v, b, l, f, s, c, p and pp");
+            "scene.nff:1: '" + std::string(24, 'x') + "...' is no entity of NFF; use v, b, l, f, s, c, p or pp");
   EXPECT_EQ(error(std::string_view("s\0\x1b 0", 5)),
-            "unknown entity 's?\?', scene.nff:1: NFF has v, b, l, f, s, c, p and pp");
+            "scene.nff:1: 's?\?' is no entity of NFF; use v, b, l, f, s, c, p or pp");
 }
 
 struct Counts {

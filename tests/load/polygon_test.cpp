@@ -131,7 +131,7 @@ TEST(Polygon, TheLargestConcaveOneIsCutInSeconds) {
   EXPECT_EQ(triangulate(gear(20000, 0.9)).size(), 19998u);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   const std::string message = test::error_of([] { triangulate(gear(largest_concave_polygon + 4, 0.9)); });
-  EXPECT_EQ(message, "a polygon that is not convex has 65540 vertices: cut it into pieces of at most 65536");
+  EXPECT_EQ(message, "a polygon that is not convex has 65540 vertices; cut it into pieces of at most 65536");
 }
 
 TEST(Polygon, ALargeConvexOneIsAFan) {
