@@ -5,6 +5,7 @@
 
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
+#include "gpu/stream_tracer.h"
 
 namespace rayengine {
 namespace {
@@ -20,7 +21,14 @@ std::unique_ptr<Tracer> make_reference(std::shared_ptr<const Geometry> geometry,
   return make_reference_tracer(std::move(geometry));
 }
 
+std::unique_ptr<Tracer> make_stream(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  StreamOptions stream;
+  stream.device = options.gpu;
+  return make_stream_tracer(std::move(geometry), options.precision, stream);
+}
+
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
+constexpr std::array stream_precisions{Precision::fast, Precision::robust};
 constexpr std::array all_precisions{Precision::half, Precision::fast, Precision::robust, Precision::certified};
 
 struct Entry {
@@ -32,6 +40,9 @@ struct Entry {
 /// All tracers there are; the first is `auto`.
 constexpr std::array registry{
     Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
+    Entry{{"stream", "GPU: the ray engine, BVH walked by the CPU and tests by intersection shaders"},
+          make_stream,
+          stream_precisions},
     Entry{{"reference", "CPU: the oracle, 128-bit floating point; slow, and right"}, make_reference, all_precisions},
 };
 

@@ -13,6 +13,7 @@ namespace rayengine {
 struct TracerOptions {
   Precision precision = Precision::robust;
   int threads = 0;  ///< 0: as many as the machine has
+  int gpu = -1;     ///< an EGL device by its number; the best when negative
 };
 
 /// Names of all tracers, and one line on each for --help.

@@ -24,7 +24,7 @@ constexpr std::size_t lines_per_source = 10000;
 std::string assemble(const Stage& stage) {
   std::string text = "#version 450 core\n";
   for (std::string define : stage.defines) {
-    std::replace(define.begin(), define.end(), '=', ' ');
+    if (const std::size_t equals = define.find('='); equals != std::string::npos) define[equals] = ' ';
     text += "#define " + define + "\n";
   }
   for (std::size_t i = 0; i < stage.sources.size(); ++i) {

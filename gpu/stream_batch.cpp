@@ -1,0 +1,66 @@
+#include "gpu/stream_batch.h"
+
+#include "accel/ray.h"
+
+namespace rayengine {
+namespace {
+
+constexpr GLuint hits_unit = 4;  // after the four inputs
+
+std::array<Texture, 4> make_inputs(GLsizei side) {
+  return {make_texture(GL_RGBA32F, side, side), make_texture(GL_RGBA32F, side, side),
+          make_texture(GL_RGBA32UI, side, side), make_texture(GL_RGBA32UI, side, side)};
+}
+
+}  // namespace
+
+StreamBatch::StreamBatch(GLsizei side)
+    : side_(side),
+      upload_(make_mapped_buffer(4 * section(), Mapping::upload)),
+      read_back_(make_mapped_buffer(capacity() * sizeof(Answer), Mapping::read_back)),
+      inputs_(make_inputs(side)),
+      hits_(make_texture(GL_RG32UI, side, side)),
+      depth_(make_texture(GL_DEPTH_COMPONENT32F, side, side)) {
+  glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, hits_.object.id(), 0);
+  glNamedFramebufferTexture(frame_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
+  glNamedFramebufferTexture(states_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
+}
+
+std::size_t StreamBatch::rays_in_rows(std::size_t count) const {
+  const auto side = static_cast<std::size_t>(side_);
+  return (count + side - 1) / side * side;
+}
+
+void StreamBatch::upload(std::size_t count) {
+  rows_ = static_cast<GLsizei>(rays_in_rows(count)) / side_;
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_.object.id());
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bool integer = i >= 2;
+    glTextureSubImage2D(inputs_[i].object.id(), 0, 0, 0, side_, rows_, integer ? GL_RGBA_INTEGER : GL_RGBA,
+                        integer ? GL_UNSIGNED_INT : GL_FLOAT, reinterpret_cast<const void*>(i * section()));
+  }
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  bind();
+  const GLuint no_hit[4] = {0x7F7FFFFFu, no_id, 0, 0};  // the largest number
+  const GLfloat no_state = 1;
+  glClearNamedFramebufferuiv(frame_.id(), GL_COLOR, 0, no_hit);
+  glClearNamedFramebufferfv(frame_.id(), GL_DEPTH, 0, &no_state);
+}
+
+void StreamBatch::bind() const {
+  for (GLuint i = 0; i < inputs_.size(); ++i) inputs_[i].bind(i);
+  hits_.bind(hits_unit);
+  glViewport(0, 0, side_, rows_);
+  glScissor(0, 0, side_, rows_);
+}
+
+void StreamBatch::read_back() {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_.object.id());
+  glReadPixels(0, 0, side_, rows_, GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  fence_.emplace();
+}
+
+}  // namespace rayengine
