@@ -25,7 +25,7 @@ void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std
     return;
   }
   // A ray may have all lanes of all nodes waiting at once, however unlikely; memory that is not touched costs nothing.
-  const auto queue = std::make_unique_for_overwrite<std::uint64_t[]>(treelets.nodes.size() * WideNode::width + 2);
+  const auto queue = std::make_unique_for_overwrite<std::uint64_t[]>(treelets.nodes.size() * WideNode::width + 64);
   WalkJob job{};
   job.nodes = treelets.nodes.data();
   job.scale = treelets.frame.scale;

@@ -262,21 +262,74 @@ TEST_P(Walk, StopsEarlierWhenTmaxIsLowered) {
   }
 }
 
-TEST_P(Walk, AnswersManyRaysAsItAnswersEach) {
-  const Scene scene(clutter({}, 1), 8);
-  const std::vector<Ray> rays = random_rays({}, 1, 2, 301);
+namespace {
+
+void expect_as_each_alone(Isa isa, const Scene& scene, const std::vector<Ray>& rays) {
   constexpr std::uint32_t capacity = 5;
   std::vector<WalkCursor> cursors(rays.size());
   std::vector<TreeletEntry> lists(rays.size() * capacity);
   std::vector<std::uint32_t> counts(rays.size());
-  walk_with(GetParam(), scene.treelets, rays, cursors, capacity, lists, counts);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    WalkCursor cursor;
-    const auto alone = list(GetParam(), scene.treelets, rays[i], capacity, cursor);
-    ASSERT_EQ(counts[i], alone.size());
-    EXPECT_EQ(cursors[i].last, cursor.last);
-    for (std::uint32_t k = 0; k < counts[i]; ++k) EXPECT_EQ(lists[i * capacity + k].treelet, alone[k].treelet);
+  for (bool again = true; again;) {
+    const std::vector<WalkCursor> before = cursors;
+    walk_with(isa, scene.treelets, rays, cursors, capacity, lists, counts);
+    again = false;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      WalkCursor cursor = before[i];
+      const auto alone = list(isa, scene.treelets, rays[i], capacity, cursor);
+      ASSERT_EQ(counts[i], alone.size());
+      ASSERT_EQ(cursors[i].last, cursor.last);
+      again = again || !cursor.finished();
+      for (std::uint32_t k = 0; k < counts[i]; ++k) {
+        ASSERT_EQ(lists[i * capacity + k].treelet, alone[k].treelet);
+        ASSERT_EQ(lists[i * capacity + k].t, alone[k].t);
+      }
+    }
   }
+}
+
+/// Bundles of 16 rays that start and run nearly alike, some of them dead or cut short.
+std::vector<Ray> bundles(double spread) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  std::vector<Ray> rays;
+  for (const Ray& leader : random_rays({}, 1, 2, 100)) {
+    for (int k = 0; k < 16; ++k) {
+      Ray ray = leader;
+      ray.direction = glm::normalize(ray.direction);
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] += spread * normal(random);
+        ray.direction[axis] *= 1 + spread * normal(random);
+      }
+      if (random() % 10 == 0) ray.direction.y = std::nan("");
+      if (random() % 10 == 0) ray.origin.z += 100;
+      if (random() % 10 == 0) ray.tmax = 2;
+      if (random() % 10 == 0) ray.tmin = 1.5;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+}  // namespace
+
+TEST_P(Walk, AnswersManyRaysAsItAnswersEach) {
+  const Scene scene(clutter({}, 1), 8);
+  expect_as_each_alone(GetParam(), scene, random_rays({}, 1, 2, 301));
+}
+
+TEST_P(Walk, AnswersRaysThatKeepTogetherAsItAnswersEach) {
+  const Scene fine(clutter({}, 1), 2), coarse(clutter({}, 1), 64);
+  for (const double spread : {0.0, 1e-6, 1e-3, 0.1})
+    for (const Scene* scene : {&fine, &coarse})
+      ASSERT_NO_FATAL_FAILURE(expect_as_each_alone(GetParam(), *scene, bundles(spread))) << spread;
+}
+
+TEST_P(Walk, AnswersRaysAlongAnAxisTogetherAsItAnswersEach) {
+  const Scene scene(clutter({}, 1), 16);
+  std::vector<Ray> rays;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) rays.push_back({{x / 32.0 - 1, y / 32.0 - 1, 3}, 0, {0, -0.0, -1}, infinity});
+  expect_as_each_alone(GetParam(), scene, rays);
 }
 
 TEST_P(Walk, OfInvalidRaysIsEmpty) {
