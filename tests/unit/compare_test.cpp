@@ -111,9 +111,11 @@ TEST(Compare, HoldsAHitToTheErrorThatItStates) {
 
 TEST(Compare, SortsDifferencesIntoFloatUlps) {
   // t = 1 at the first ray, where a float ulp is 2^-23.
-  for (const auto& [ulps, bin] : {std::pair{1., 1}, {2., 2}, {3., 3}, {4., 3}, {5., 4}, {8., 4}, {9., 5}}) {
-    const Comparison c = compare_defective({plain_rays[0]}, [&](std::size_t, Hit& hit) { hit.t += ulps * 0x1p-23; });
-    ASSERT_EQ(c.ulps.size(), static_cast<std::size_t>(bin) + 1) << ulps;
+  const std::pair<double, std::size_t> bins[]{{1, 1}, {2, 2}, {3, 3}, {4, 3}, {5, 4}, {8, 4}, {9, 5}};
+  for (const auto& bin : bins) {
+    const Comparison c =
+        compare_defective({plain_rays[0]}, [&](std::size_t, Hit& hit) { hit.t += bin.first * 0x1p-23; });
+    ASSERT_EQ(c.ulps.size(), bin.second + 1) << bin.first;
     EXPECT_EQ(c.ulps.back(), 1u);
   }
 }
