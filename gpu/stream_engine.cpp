@@ -19,7 +19,7 @@ constexpr std::uint64_t patience = 10'000'000'000;  // nanoseconds until a batch
 
 /// Where single precision is tested in software, tests are dear and lists cheap.
 std::uint32_t treelet_size(const StreamOptions& options, const GpuInfo& gpu) {
-  return options.treelet_size ? options.treelet_size : gpu.software ? 32 : 512;
+  return options.treelet_size ? options.treelet_size : gpu.software ? 16 : 512;
 }
 
 GLsizei batch_side(const StreamOptions& options, const GpuInfo& gpu) {

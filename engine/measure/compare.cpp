@@ -188,9 +188,12 @@ class Judge {
     return in_t(doubt.bound, rays_[doubt.ray], exact) + exact.error;
   }
 
-  /// Two surfaces nearer to each other than rounding tells apart are as ambiguous as a ray that nearly misses one.
+  /// Two surfaces nearer to each other than rounding tells apart are as ambiguous as a ray that nearly misses one, if
+  /// the ray meets both: the neighbour of a coplanar triangle is not.
   bool as_near(const Doubt& doubt, const Hit& hit, const Hit& exact) const {
-    return hit.hit() && exact.hit() && std::abs(hit.t - exact.t) <= slack(doubt, exact);
+    if (!hit.hit() || !exact.hit() || !(std::abs(hit.t - exact.t) <= slack(doubt, exact))) return false;
+    const HitLists met = oracle_.all(rays_.subspan(doubt.ray, 1));
+    return std::any_of(met.hits.begin(), met.hits.end(), [&](const Hit& h) { return same_ids(h, hit); });
   }
 
   /// Whether t lies among those that the moved rays got, which on a curved surface spread further than on a plane one.
