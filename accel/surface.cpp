@@ -219,10 +219,18 @@ glm::dvec3 shading_normal(const PrimitiveRef& ref, const glm::dvec2& barycentric
   return glm::dot(n, n) > 0 ? unit(to_world(ref, n)) : geometric;
 }
 
-double magnitude(const PrimitiveRef& ref, const glm::dvec3& position) {
-  if (!ref.is_triangle() || ref.instance) return largest(position);
+/// Sets magnitude and spread of a triangle. A distance along the normal in an instance's group is divided by the length
+/// of what the map makes of the unit normal to be one in the world.
+void set_sizes(const PrimitiveRef& ref, Surface& surface) {
   const Corners k = corners(ref);
-  return std::max({largest(position), largest(k.a), largest(k.b), largest(k.c)});
+  const glm::dvec3 ab = k.b - k.a, ac = k.c - k.a, bc = k.c - k.b, n = glm::cross(ab, ac);
+  const double area = glm::length(n);
+  surface.magnitude = std::max({largest(k.a), largest(k.b), largest(k.c)});
+  surface.spread = std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac) * glm::dot(bc, bc)) / area;
+  if (!ref.instance) return;
+  const double stretch = area / glm::length(to_world(ref, n));
+  surface.magnitude = surface.magnitude * stretch + largest(ref.instance->to_group.origin);
+  surface.spread *= stretch;
 }
 
 }  // namespace
@@ -253,7 +261,8 @@ Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   result.position = ray.at(s.t);
   result.normal = geometric_normal(ref, result.position);
   result.shading_normal = shading_normal(ref, s.barycentrics, result.normal);
-  result.magnitude = magnitude(ref, result.position);
+  if (ref.is_triangle()) set_sizes(ref, result);
+  result.magnitude = std::max(result.magnitude, largest(result.position));
   // The position itself is rounded: a product and a sum of numbers no larger than these.
   const double rounding = gamma(2) * (largest(ray.origin) + std::abs(s.t) * largest(ray.direction));
   result.error = (std::isfinite(s.distance) ? s.distance : 0) + 2 * rounding;

@@ -11,7 +11,9 @@ struct Surface {
   glm::dvec3 normal{0};          ///< unit geometric normal, oriented as Hit::normal
   glm::dvec3 shading_normal{0};  ///< unit; interpolated where the mesh has normals
   double error = 0;              ///< bound on the distance, along the normal, between `position` and the surface
-  double magnitude = 0;          ///< largest absolute coordinate of `position` and of the triangle's vertices
+  double magnitude = 0;          ///< largest absolute coordinate of `position` and of the triangle's vertices; where an
+                                 ///< instance's map shifts them, of what is seen there, in world units along the normal
+  double spread = 0;             ///< diameter of the triangle's circumscribed circle, likewise; 0 on quadrics
   std::uint32_t material = 0;
   bool is_triangle = false;
 };

@@ -10,7 +10,7 @@
 namespace rayengine {
 namespace {
 
-/// Secondary rays stand off what they leave by single precision's needs, so that the same rays suit every tracer.
+/// Secondary rays clear what they leave by single precision's needs, so that the same rays suit every tracer.
 const Limits single_precision{.triangle_roundoff = 0x1p-24, .quadric_roundoff = 0x1p-24};
 
 /// A hit to leave from, on the side that the ray came from.
@@ -25,10 +25,9 @@ Leave leave(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   return {Departure(surface, single_precision), behind ? -surface.normal : surface.normal};
 }
 
-Ray shadow_ray(const Leave& leave, const Light& light) {
-  if (light.type == Light::Type::directional) return {leave.from.towards(leave.normal), 0, -light.direction, infinity};
-  const glm::dvec3 origin = leave.from.towards(leave.normal);
-  return {origin, 0, light.position - origin, 1};
+Ray shadow_ray(const Departure& from, const Light& light) {
+  if (light.type == Light::Type::directional) return from.ray(-light.direction, infinity);
+  return from.ray(light.position - from.position, 1);
 }
 
 struct Sphere {
@@ -57,7 +56,7 @@ std::vector<Ray> shadow_rays(const Scene& scene, std::span<const Ray> rays, std:
     if (!hits[i].hit()) continue;
     const Leave from = leave(*scene.geometry, rays[i], hits[i]);
     for (const Light& light : scene.lights)
-      if (const Ray ray = shadow_ray(from, light); glm::dot(ray.direction, from.normal) > 0) result.push_back(ray);
+      if (const Ray ray = shadow_ray(from.from, light); glm::dot(ray.direction, from.normal) > 0) result.push_back(ray);
   }
   return result;
 }
@@ -71,7 +70,7 @@ std::vector<Ray> bounce_rays(const Geometry& geometry, std::span<const Ray> rays
     // The normal plus a point of the unit sphere is distributed by the cosine; the two together are never far below it.
     // The seed is turned over lest the numbers be those that random_rays made `rays` of.
     const glm::dvec3 direction = from.normal + (1 - 0x1p-20) * Random(~seed, i).direction();
-    result.push_back({from.from.towards(from.normal), 0, glm::normalize(direction), infinity});
+    result.push_back(from.from.ray(glm::normalize(direction), infinity));
   }
   return result;
 }

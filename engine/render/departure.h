@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -8,35 +9,41 @@
 
 namespace rayengine {
 
-/// How far off a surface a ray must start, in units of u * magnitude, for a tracer whose arithmetic has round-off u not
-/// to hit again what the ray leaves. All terms are distances along the unit normal, M is Surface::magnitude, and S <= 2
-/// sqrt(3) M is the triangle's longest vertex distance as seen from the origin:
-///   rounding the origin's coordinates                            sqrt(3) u M
-///   rounding the vertices' (the triangle moves as they do)       sqrt(3) u M
-///   rounding vertices minus origin, at most u S each             2 sqrt(3) u M
-///   edges (u) and their cross product N: |dN| <= (2 sqrt(3) / sin + 1) u |N|, times S:
-///                                                                (12 / sin + 2 sqrt(3)) u M
-///   the dot product with N: 3 u S                                6 sqrt(3) u M
-/// where `sin` is of the angle between the two edges. The sum is below 64 u M for corners between 20 and 160 degrees;
-/// quadrics lose less: the point in object space, the closest approach and the stable root are each within a few u of
-/// the magnitudes.
-inline constexpr double departure_units = 64;
+/// How far from a triangle a tracer whose arithmetic has round-off u may still see it where a ray leaves it. All terms
+/// are distances along the unit normal; M is Surface::magnitude, and S, the longest distance of a vertex from the
+/// origin, and the edges a, b, c are bounded by D = Surface::spread = a b c / |N|:
+///   rounding the origin's coordinates                              sqrt(3) u M
+///   rounding the vertices' (the triangle moves as they do)         sqrt(3) u M
+///   rounding vertices minus origin                                 u S
+///   edges (u) and their cross product N: |dN| S / |N|, where |dN| <= 2 sqrt(3) u a b + u |N|
+///                                                                  2 sqrt(3) u D + u S
+///   the dot product with N                                         3 u S
+/// which add up to less than u (4 M + 9 D).
+inline double triangle_clearance(const Surface& s, double u) { return u * (4 * s.magnitude + 9 * s.spread); }
 
-/// Where rays leave a hit from: off the surface by what is unsure of it, on the side the new ray goes to.
+/// The same for quadrics: the way to object space, the closest approach and the stable root are each within a few u of
+/// the coordinates' magnitude, and 64 covers them all.
+inline double quadric_clearance(const Surface& s, double u) { return 64 * u * s.magnitude; }
+
+/// How rays leave a hit: from the point itself, but blind until they have risen above all that is unsure of the
+/// surface. To move the origin instead would move every shadow's edge with it.
 struct Departure {
   glm::dvec3 position{0};
-  glm::dvec3 clearance{0};  ///< along the geometric normal
+  glm::dvec3 normal{0};  ///< geometric
+  double clearance = 0;  ///< distance along the normal
 
   Departure() = default;
-  Departure(const Surface& s, const Limits& limits) : position(s.position) {
-    const double roundoff = s.is_triangle ? limits.triangle_roundoff : limits.quadric_roundoff;
-    // The surface's own error counts twice: for where the point is, and for where the tracer's arithmetic sees the
-    // surface.
-    clearance = (2 * s.error + departure_units * roundoff * s.magnitude) * s.normal;
+  Departure(const Surface& s, const Limits& limits) : position(s.position), normal(s.normal) {
+    const double seen =
+        s.is_triangle ? triangle_clearance(s, limits.triangle_roundoff) : quadric_clearance(s, limits.quadric_roundoff);
+    // The surface's own error counts for where the point is and for where the tracer's arithmetic sees the surface; and
+    // a ray that rises from a hollow takes up to twice as long to clear it as from a plane.
+    clearance = 4 * s.error + seen;
   }
 
-  glm::dvec3 towards(const glm::dvec3& direction) const {
-    return glm::dot(clearance, direction) < 0 ? position - clearance : position + clearance;
+  Ray ray(const glm::dvec3& direction, double tmax) const {
+    const double rise = std::abs(glm::dot(normal, direction));
+    return {position, std::min(tmax, clearance / rise), direction, tmax};
   }
 };
 

@@ -114,7 +114,7 @@ void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& poin
 void Waves::spawn(Level& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
                   std::uint64_t& count) {
   if (!matters(weight)) return;
-  next.add({from.departure.towards(direction), 0, direction, infinity}, {weight, from.path.sample});
+  next.add(from.departure.ray(direction, infinity), {weight, from.path.sample});
   ++count;
 }
 
@@ -128,9 +128,8 @@ void Waves::shine(const Light& light) {
     const Material& material = picture_.materials[p.material];
     const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
     if (seen == glm::vec3(0)) continue;
-    const glm::dvec3 from = p.departure.towards(to_light);
     // t counts in lengths of the direction: at 1 the ray has reached a point light.
-    shadow_.add({from, 0, is_point ? light.position - from : to_light, is_point ? 1 : infinity}, {seen, p.path.sample});
+    shadow_.add(p.departure.ray(to_light, is_point ? 1 : infinity), {seen, p.path.sample});
   }
   rays_[shadow_ray] += shadow_.rays.size();
   shadow_status_.resize(std::max(shadow_status_.size(), shadow_.rays.size()));

@@ -66,7 +66,7 @@ TEST(Rays, ShadowRaysEndAtTheirLight) {
   EXPECT_NEAR(glm::length(shadow[0].at(shadow[0].tmax) - point.position), 0, 1e-12);
   EXPECT_EQ(shadow[1].direction, glm::dvec3(0, 0, 2));
   EXPECT_EQ(shadow[1].tmax, infinity);
-  for (const Ray& ray : shadow) EXPECT_GT(ray.origin.z, 1) << "starts outside";
+  for (const Ray& ray : shadow) EXPECT_GT(ray.at(ray.tmin).z, 1) << "starts outside";
   EXPECT_FALSE(trace(scene.geometry, shadow)[0].hit());
 }
 
