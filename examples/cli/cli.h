@@ -1,0 +1,87 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "engine/scene/scene.h"
+
+namespace rayengine::cli {
+
+/// What a subcommand does once its arguments are read; the result is the exit code.
+using Action = std::function<int()>;
+
+// Each declares its subcommand, and sets `action` when it is the one that was called.
+void add_render(CLI::App& app, Action& action);
+void add_trace(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
+void add_bench(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+
+/// How much is said on stderr; what was asked for goes to stdout whatever it is.
+enum class Verbosity { quiet, normal, verbose };
+
+/// What every subcommand understands.
+struct Common {
+  int threads = 0;  ///< 0: as many as the machine has
+  Verbosity verbosity = Verbosity::normal;
+
+  bool quiet() const { return verbosity == Verbosity::quiet; }
+};
+
+/// The subcommand with the options of Common and examples below its help. Its options live as long as the app.
+CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::string& description,
+                         const std::string& examples, Common& common);
+
+/// A number within a range, ends included.
+CLI::Option* add_count(CLI::App* app, const std::string& name, int& count, std::array<int, 2> range,
+                       const std::string& help);
+CLI::Option* add_scene(CLI::App* app, std::filesystem::path& scene);
+CLI::Option* add_tracer(CLI::App* app, std::string& name);
+CLI::Option* add_precision(CLI::App* app, Precision& precision);
+CLI::Option* add_size(CLI::App* app, std::optional<glm::ivec2>& size, const std::string& fallback);
+
+/// Comma-separated names, as in `--tracers embree,reference`.
+std::vector<std::string> split(const std::string& list);
+
+// Both throw CLI::ValidationError, naming the choices.
+void check_tracer(const std::string& option, const std::string& name);
+Precision to_precision(const std::string& name);
+
+/// Keeps everything that runs in parallel to `threads` threads until it goes. 0: as many as the machine has.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
+/// The threads that work with `--threads threads`.
+int thread_count(int threads);
+
+struct LoadedScene {
+  Scene scene;
+  double seconds = 0;
+};
+
+/// Loads, and says the scene's notes on stderr, each once.
+LoadedScene load(const std::filesystem::path& file, const Common& common);
+
+/// One line on stderr, unless quiet: `note: ...`.
+void note(const Common& common, const std::string& text);
+
+/// Throws Error when an image of this size, or the work on it, does not fit into the machine's memory.
+void check_size(glm::ivec2 size, std::size_t channels);
+
+}  // namespace rayengine::cli

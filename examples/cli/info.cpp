@@ -1,0 +1,144 @@
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+
+#include "engine/load/atomic_file.h"
+#include "engine/tracers.h"
+#include "examples/cli/cli.h"
+#include "examples/cli/report.h"
+
+namespace rayengine::cli {
+namespace {
+
+struct Options {
+  Common common;
+  std::filesystem::path scene, json;
+};
+
+/// A tracer holds a precision when it can be made with it, be it on nothing.
+std::vector<std::string> precisions_of(std::string_view tracer) {
+  const std::shared_ptr<const Geometry> nothing = GeometryBuilder().build();
+  std::vector<std::string> held;
+  for (const Precision precision : {Precision::half, Precision::fast, Precision::robust, Precision::certified}) try {
+      if (make_tracer(tracer, nothing, {precision})->precision() == precision) held.emplace_back(to_string(precision));
+    } catch (const Error&) {  // it says which it holds, as we do here
+    }
+  return held;
+}
+
+Json tracers() {
+  Json all = Json::array();
+  for (const TracerInfo& info : tracer_list())
+    all.push_back({{"name", info.name}, {"precisions", precisions_of(info.name)}, {"summary", info.summary}});
+  return all;
+}
+
+std::string kind(const Geometry& geometry, const Object& object) {
+  if (object.kind == Object::Kind::mesh) return "mesh";
+  if (object.kind == Object::Kind::instance) return "instance";
+  return std::string(to_string(geometry.quadrics[object.first].type));
+}
+
+Json counts(const Geometry& geometry) {
+  Json by_kind = Json::object();
+  for (const Object& object : geometry.objects) {
+    Json& count = by_kind[kind(geometry, object)];
+    count = count.is_null() ? 1 : count.get<std::uint64_t>() + 1;
+  }
+  return by_kind;
+}
+
+Json corner(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
+
+/// Bytes a primitive, of the arrays that only primitives of its type need.
+Json memory(const Geometry& g) {
+  const auto bytes = [](const auto&... arrays) { return (std::size_t{0} + ... + (arrays.size() * sizeof(arrays[0]))); };
+  Json memory = {{"geometry_bytes", g.bytes()}};
+  if (!g.triangles.empty())
+    memory["bytes_per_triangle"] =
+        static_cast<double>(bytes(g.vertices, g.exact_vertices, g.normals, g.triangles, g.triangle_object)) /
+        static_cast<double>(g.triangles.size());
+  if (!g.quadrics.empty())
+    memory["bytes_per_quadric"] =
+        static_cast<double>(bytes(g.quadrics, g.forms)) / static_cast<double>(g.quadrics.size());
+  if (!g.instances.empty()) memory["bytes_per_instance"] = sizeof(Instance);
+  return memory;
+}
+
+Json describe(const std::filesystem::path& file, const LoadedScene& loaded) {
+  const Scene& scene = loaded.scene;
+  const Geometry& geometry = *scene.geometry;
+  return {{"file", file.string()},
+          {"load_s", loaded.seconds},
+          {"objects", geometry.objects.size()},
+          {"objects_by_type", counts(geometry)},
+          {"triangles", geometry.triangles.size()},
+          {"vertices", geometry.vertices.size()},
+          {"vertices_need_double", !geometry.exact_vertices.empty()},
+          {"quadrics", geometry.quadrics.size()},
+          {"instances", geometry.instances.size()},
+          {"groups", geometry.groups.size()},
+          {"primitives", geometry.primitive_count},
+          {"materials", scene.materials.size()},
+          {"lights", scene.lights.size()},
+          {"size", {scene.camera.size.x, scene.camera.size.y}},
+          {"bounds", {corner(geometry.bounds.lower), corner(geometry.bounds.upper)}},
+          {"memory", memory(geometry)},
+          {"notes", scene.notes}};
+}
+
+/// Plain lines, `key value`, nested keys indented.
+void print(const Json& json, int indent = 0) {
+  for (const auto& [key, value] : json.items()) {
+    std::cout << fmt::format("{:{}}{:<{}} ", "", indent, key, 22 - indent);
+    if (value.is_object()) {
+      std::cout << '\n';
+      print(value, indent + 2);
+    } else {
+      std::cout << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+    }
+  }
+}
+
+void print_tracers(const Json& tracers) {
+  for (const Json& tracer : tracers)
+    std::cout << fmt::format("tracer {:<15} {} ({})\n", tracer["name"].get<std::string>(),
+                             tracer["summary"].get<std::string>(),
+                             fmt::join(tracer["precisions"].get<std::vector<std::string>>(), ", "));
+}
+
+int run(const Options& o) {
+  if (!o.json.empty()) check_output(o.json);
+  const ThreadLimit limit(o.common.threads);
+  Json info = {{"device", device(thread_count(o.common.threads))}};
+  if (o.scene.empty())
+    info["tracers"] = tracers();
+  else
+    info["scene"] = describe(o.scene, load(o.scene, o.common));
+  if (!o.json.empty()) write_json(o.json, info);
+  if (o.scene.empty()) {
+    print(info["device"]);
+    print_tracers(info["tracers"]);
+  } else {
+    print(info["scene"]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub = add_subcommand(app, "info", "Say what this program and machine can do, or what a scene holds",
+                                 "  rayengine info\n"
+                                 "  rayengine info bunny.ply --json bunny.json",
+                                 options->common);
+  add_scene(sub, options->scene);
+  sub->add_option("--json", options->json, "The same as JSON")->type_name("FILE");
+  sub->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace rayengine::cli

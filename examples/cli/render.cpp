@@ -1,0 +1,193 @@
+#include "engine/render/render.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <numeric>
+
+#include "engine/load/atomic_file.h"
+#include "engine/load/image_io.h"
+#include "engine/tracers.h"
+#include "examples/cli/cli.h"
+#include "examples/cli/progress.h"
+#include "examples/cli/report.h"
+
+namespace rayengine::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::pair<std::string, Aov>> aov_names = {{"depth", Aov::depth},       {"normal", Aov::normal},
+                                                            {"object", Aov::object},     {"primitive", Aov::primitive},
+                                                            {"position", Aov::position}, {"error", Aov::error}};
+constexpr const char* ray_kinds[] = {"primary", "shadow", "reflected", "refracted"};
+
+struct Options {
+  Common common;
+  fs::path scene, output, stats;
+  std::optional<glm::ivec2> size;
+  std::string tracer = "auto";
+  Precision precision = Precision::robust;
+  bool linear = false;
+  RenderOptions render;
+};
+
+Aov to_aov(const std::string& name) {
+  for (const auto& [known, aov] : aov_names)
+    if (name == known) return aov;
+  throw CLI::ValidationError(
+      "--aov", "there is no output '" + name + "'; choose among depth,normal,object,primitive,position,error");
+}
+
+Shading to_shading(const std::string& name) {
+  if (name == "full") return Shading::full;
+  if (name == "direct") return Shading::direct;
+  throw CLI::ValidationError("--shading", "there is no shading '" + name + "'; choose full or direct");
+}
+
+/// The sample scene lies beside the program: in the source tree that it was built in, or in the installed share folder.
+fs::path sample_scene() {
+  const fs::path name = "scenes/sphereflake.json";
+  for (fs::path at = fs::read_symlink("/proc/self/exe").parent_path(); at != at.root_path(); at = at.parent_path())
+    for (const fs::path& file : {at / name, at / "share/rayengine" / name})
+      if (fs::exists(file)) return file;
+  throw Error("the sample scene scenes/sphereflake.json was not found near the program: name a scene to render");
+}
+
+/// What can be known to be wrong before any work is done.
+void check(Options& o) {
+  if (o.scene.empty()) o.scene = sample_scene();
+  if (o.output.empty()) o.output = o.scene.stem().string() + ".png";
+  if (!o.render.aovs.empty() && o.output.extension() != ".exr")
+    throw CLI::ValidationError(
+        "--aov", "needs a format with named channels: write to a .exr file, not to '" + o.output.string() + "'");
+  check_writable(o.output);
+  if (!o.stats.empty()) check_output(o.stats);
+  if (o.size) check_size(*o.size, 4);
+}
+
+struct Seconds {
+  double load = 0, build = 0, render = 0, write = 0;
+};
+
+std::uint64_t total(const RenderStats& stats) {
+  return std::accumulate(stats.rays.begin(), stats.rays.end(), std::uint64_t{0});
+}
+
+Json to_json(const Options& o, const Scene& scene, const Tracer& tracer, const RenderStats& stats,
+             const Seconds& seconds) {
+  Json rays;
+  for (std::size_t kind = 0; kind < stats.rays.size(); ++kind) rays[ray_kinds[kind]] = stats.rays[kind];
+  return {{"scene", o.scene.string()},
+          {"tracer", tracer.name()},
+          {"precision", to_string(tracer.precision())},
+          {"size", {scene.camera.size.x, scene.camera.size.y}},
+          {"rays", total(stats)},
+          {"rays_by_kind", rays},
+          {"invalid_rays", stats.invalid_rays},
+          {"mrays_per_s", static_cast<double>(total(stats)) / seconds.render / 1e6},
+          {"load_s", seconds.load},
+          {"build_s", seconds.build},
+          {"render_s", seconds.render},
+          {"write_s", seconds.write},
+          {"tracer_thread_s", stats.tracer_seconds},
+          {"shading_thread_s", stats.shading_seconds},
+          {"bytes", tracer.bytes()},
+          {"geometry_bytes", scene.geometry->bytes()},
+          {"peak_bytes", peak_memory()},
+          {"shares", device_shares(tracer)},
+          {"device", device(thread_count(o.common.threads))}};
+}
+
+void say(const Options& o, const Scene& scene, const Tracer& tracer, const RenderStats& stats, const Seconds& seconds) {
+  std::string rays;
+  for (std::size_t kind = 0; kind < stats.rays.size(); ++kind)
+    if (stats.rays[kind])
+      rays += fmt::format("{}{} {}", rays.empty() ? "" : ", ", count_text(stats.rays[kind]), ray_kinds[kind]);
+  std::cerr << fmt::format("{}: {}x{} pixels, tracer {}, precision {}\n", o.output.string(), scene.camera.size.x,
+                           scene.camera.size.y, tracer.name(), to_string(tracer.precision()))
+            << fmt::format("render {} (load {}, build {}, write {}), {:.3g} Mrays/s\n", seconds_text(seconds.render),
+                           seconds_text(seconds.load), seconds_text(seconds.build), seconds_text(seconds.write),
+                           static_cast<double>(total(stats)) / seconds.render / 1e6)
+            << fmt::format("rays: {}\n", rays)
+            << fmt::format("memory: geometry {}, tracer {}, peak {}\n", bytes_text(scene.geometry->bytes()),
+                           bytes_text(tracer.bytes()), bytes_text(peak_memory()));
+  if (o.common.verbosity == Verbosity::verbose)
+    std::cerr << fmt::format("thread time: tracer {}, shading {}; invalid rays {}\n",
+                             seconds_text(stats.tracer_seconds), seconds_text(stats.shading_seconds),
+                             stats.invalid_rays);
+}
+
+double write(const Options& o, const Image& image) {
+  const auto start = std::chrono::steady_clock::now();
+  write_image(o.output, image, o.linear ? Encoding::linear : Encoding::automatic);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+RenderResult render_with_progress(const Options& o, const Scene& scene, Tracer& tracer) {
+  Progress progress("render", !o.common.quiet());
+  RenderOptions options = o.render;
+  options.threads = o.common.threads;
+  options.progress = [&](double share) { progress.update(share); };
+  return render(scene, tracer, options);
+}
+
+int run(Options& o) {
+  check(o);
+  const ThreadLimit limit(o.common.threads);
+  LoadedScene loaded = load(o.scene, o.common);
+  Scene& scene = loaded.scene;
+  if (o.size) scene.camera.size = *o.size;
+  check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());
+  const auto tracer = make_tracer(o.tracer, scene.geometry, {o.precision, o.common.threads});
+  const RenderResult result = render_with_progress(o, scene, *tracer);
+  Seconds seconds{loaded.seconds, tracer->build_seconds(), result.stats.seconds};
+  seconds.write = write(o, result.image);
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, *tracer, result.stats, seconds));
+  if (!o.common.quiet()) say(o, scene, *tracer, result.stats, seconds);
+  return 0;
+}
+
+void add_picture_options(CLI::App* app, Options& o) {
+  add_count(app, "--depth", o.render.depth, {0, 1000}, "Reflections and refractions that may follow each other");
+  add_count(app, "--spp", o.render.spp, {1, 65536}, "Samples a pixel; 1 is its centre");
+  app->add_option_function<std::string>(
+         "--shading", [&](const std::string& name) { o.render.shading = to_shading(name); },
+         "full: Whitted's model; direct: Lambert and hard shadows only")
+      ->type_name("full|direct")
+      ->default_str("full");
+  app->add_flag("--linear", o.linear, "Write values as they are, without the sRGB curve");
+  app->add_option_function<std::string>(
+         "--aov",
+         [&](const std::string& list) {
+           for (const std::string& name : split(list)) o.render.aovs.push_back(to_aov(name));
+         },
+         "More channels, for .exr: depth,normal,object,primitive,position,error")
+      ->type_name("LIST");
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub =
+      add_subcommand(app, "render", "Render a scene to an image (without SCENE: scenes/sphereflake.json)",
+                     "  rayengine render scenes/glass.json -o glass.png\n"
+                     "  rayengine render bunny.ply -o bunny.exr --size 1024x1024 --spp 16 --aov depth,normal\n"
+                     "  rayengine render balls.nff -o balls.png --shading direct --linear --stats balls.json",
+                     options->common);
+  add_scene(sub, options->scene);
+  sub->add_option("-o,--output", options->output, "Image to write; its extension says the format")
+      ->type_name("IMAGE")
+      ->default_str("the scene's name with .png");
+  add_size(sub, options->size, "the scene's");
+  add_tracer(sub, options->tracer);
+  add_precision(sub, options->precision);
+  add_picture_options(sub, *options);
+  sub->add_option("--stats", options->stats, "JSON file with times, rays and memory")->type_name("FILE");
+  sub->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace rayengine::cli
