@@ -7,6 +7,8 @@
 namespace rayengine {
 namespace {
 
+constexpr double widest = 0x1p1000;  // what lies farther out would make a frame whose scale has no inverse
+
 /// Room for the rounding of the bounds themselves, which are worked out in double.
 Box padded(Box box) {
   const glm::dvec3 pad = 0x1p-48 * glm::max(glm::abs(box.lower), glm::abs(box.upper));
@@ -90,8 +92,9 @@ Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint3
   std::vector<std::uint32_t> bounded, unbounded;
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Box& box = primitives[i].bounds;
-    (box.finite() ? bounded : unbounded).push_back(i);
-    if (box.finite()) boxes.push_back(box);
+    const bool fits = !box.empty() && box.extent() < widest;
+    (fits ? bounded : unbounded).push_back(i);
+    if (fits) boxes.push_back(box);
   }
 
   const BinaryBvh bvh = build_bvh(boxes, std::min(K, 8u));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 #include <random>
 
@@ -118,6 +119,15 @@ TEST(Treelets, OfNothingAndOfPlanesAlone) {
   EXPECT_TRUE(t.treelets.empty());
   EXPECT_EQ(t.nodes.size(), 1u);
   EXPECT_EQ(t.unbounded.quadric_count, 1u);
+}
+
+TEST(Treelets, LeaveWhatIsTooFarOutToBeTestedAlways) {
+  const TreeletPrimitive near{{{0, 0, 0}, {1, 1, 1}}, TreeletPrimitive::triangle, 0};
+  const TreeletPrimitive far{{{0, 0, 0}, {1e305, 1, 1}}, TreeletPrimitive::triangle, 1};
+  const Treelets t = build_treelets(std::array{far, near}, 8);
+  EXPECT_EQ(t.triangles, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(t.treelets.size(), 1u);
+  EXPECT_EQ(t.unbounded.triangle_count, 1u);
 }
 
 TEST(Treelets, RefuseKOfZero) { EXPECT_THROW(build_treelets({}, 0), Error); }
