@@ -3,8 +3,13 @@ include(CMakePackageConfigHelpers)
 set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/rayengine)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/RayEngine)
 
-install(DIRECTORY accel engine DESTINATION ${header_folder} FILES_MATCHING PATTERN "*.h" PATTERN "*.glsl"
-  PATTERN engine/load EXCLUDE PATTERN engine/rayengine.h EXCLUDE)
+# What a host may include: all that rayengine.h names, comparisons, and the kernels for those who trace by themselves.
+foreach(header accel/box.h accel/geometry.h accel/quadric.h accel/ray.h accel/surface.h accel/tracer.h accel/transform.h
+    engine/measure/compare.h engine/render/render.h engine/scene/image.h engine/scene/scene.h engine/tracers.h)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${header} DESTINATION ${header_folder}/${folder})
+endforeach()
+install(DIRECTORY accel/kernels DESTINATION ${header_folder}/accel)
 install(FILES engine/rayengine.h DESTINATION ${header_folder})
 
 # Here headers include each other from the top folder. In a host's include path "engine/..." could be the host's own.
