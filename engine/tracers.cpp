@@ -5,6 +5,7 @@
 
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
+#include "gpu/objects_tracer.h"
 #include "gpu/stream_tracer.h"
 
 namespace rayengine {
@@ -27,8 +28,13 @@ std::unique_ptr<Tracer> make_stream(std::shared_ptr<const Geometry> geometry, co
   return make_stream_tracer(std::move(geometry), options.precision, stream);
 }
 
+std::unique_ptr<Tracer> make_objects(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  return make_objects_tracer(std::move(geometry), options.precision, options.gpu);
+}
+
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
 constexpr std::array stream_precisions{Precision::fast, Precision::robust};
+constexpr std::array objects_precisions{Precision::half, Precision::fast, Precision::robust};
 constexpr std::array all_precisions{Precision::half, Precision::fast, Precision::robust, Precision::certified};
 
 struct Entry {
@@ -43,6 +49,9 @@ constexpr std::array registry{
     Entry{{"stream", "GPU: the ray engine, BVH walked by the CPU and tests by intersection shaders"},
           make_stream,
           stream_precisions},
+    Entry{{"objects", "GPU: Wood, McCane and King's ray caster, one pass an object; for small scenes"},
+          make_objects,
+          objects_precisions},
     Entry{{"reference", "CPU: the oracle, 128-bit floating point; slow, and right"}, make_reference, all_precisions},
 };
 

@@ -49,6 +49,7 @@ void place(FlatScene& scene, Geometry& to, const Geometry& group, const Instance
   add_vertices(to, group, to_world);
   for (std::uint32_t i = 0; i < group.triangles.size(); ++i) {
     to.triangles.push_back(group.triangles[i] + base);
+    to.triangle_object.push_back(instance.object);
     scene.triangle_ranks.push_back(first_rank + triangle_rank(group, i));
   }
   for (const Quadric& q : group.quadrics) {
@@ -73,6 +74,7 @@ FlatScene flatten(std::shared_ptr<const Geometry> geometry, std::size_t limit) {
   flat->vertices = geometry->vertices;
   flat->exact_vertices = exact_vertices(*geometry);
   flat->triangles = geometry->triangles;
+  flat->triangle_object = geometry->triangle_object;
   flat->quadrics = geometry->quadrics;
   flat->forms = geometry->forms;
   for (const Instance& i : geometry->instances)

@@ -1,11 +1,10 @@
 #include "gpu/stream_batch.h"
 
 #include "accel/ray.h"
+#include "gpu/kernel_program.h"
 
 namespace rayengine {
 namespace {
-
-constexpr GLuint hits_unit = 4;  // after the four inputs
 
 std::array<Texture, 4> make_inputs(GLsizei side) {
   return {make_texture(GL_RGBA32F, side, side), make_texture(GL_RGBA32F, side, side),

@@ -45,25 +45,23 @@ const StreamKernels& StreamEngine::kernels(StreamQuery query) {
   return *kernels;
 }
 
-Traveller StreamEngine::set_out(std::uint32_t index, const Ray& ray) const {
-  Traveller t;
+StreamTraveller StreamEngine::set_out(std::uint32_t index, const Ray& ray) const {
+  StreamTraveller t;
   t.ray = index;
   t.world = ray;
   t.frame = in_frame(treelets_.frame, ray);
   return t;
 }
 
-void StreamEngine::pass(Traveller& t, const Ray& ray) const {
-  t.floor_rank = t.best_rank;
-  t.frame.tmin = t.best_t;
-  t.best_rank = no_id;
+void StreamEngine::look_behind(StreamTraveller& t, const Ray& ray) const {
+  rayengine::look_behind(t);
   t.world.tmax = ray.tmax;
   t.world.tmin = std::clamp(t.frame.to_world(t.best_t - frame_slack(t.best_t)), ray.tmin, ray.tmax);
   t.cursor = {};
   t.fresh = true;
 }
 
-void StreamEngine::write(const StreamBatch& batch, std::size_t i, Traveller& t,
+void StreamEngine::write(const StreamBatch& batch, std::size_t i, StreamTraveller& t,
                          std::span<const TreeletEntry> list) const {
   glm::uvec4 treelets(no_id), entries(0);
   entries.x = t.floor_rank;
@@ -89,7 +87,7 @@ std::uint32_t StreamEngine::list_block(Slot& slot, std::size_t first, std::size_
   std::array<WalkCursor, block> cursors;
   std::array<TreeletEntry, block * list_length> lists;
   std::array<std::uint32_t, block> counts;
-  const std::span<Traveller> travellers(slot.travellers.data() + first, count);
+  const std::span<StreamTraveller> travellers(slot.travellers.data() + first, count);
   for (std::size_t i = 0; i < count; ++i) rays[i] = travellers[i].world, cursors[i] = travellers[i].cursor;
   walk(treelets_, {rays.data(), count}, {cursors.data(), count}, length, lists, {counts.data(), count});
   std::uint32_t longest = 0;
@@ -126,54 +124,67 @@ void StreamEngine::send(Slot& slot, StreamQuery query) {
 }
 
 /// Whether nothing on the rest of the ray's way can change its answer.
-bool StreamEngine::settled(const Traveller& t, StreamQuery query) const {
+bool StreamEngine::settled(const StreamTraveller& t, StreamQuery query) const {
   if (t.cursor.finished()) return true;
   if (t.best_rank == no_id) return false;
   return query == StreamQuery::any || (t.listed > 0 && t.best_t < t.last_entry);
 }
 
-void StreamEngine::collect(Slot& slot, StreamQuery query, const Arrive& arrive, std::vector<Traveller>& again) {
+/// Whether the traveller's journey has ended.
+bool StreamEngine::arrived(StreamTraveller& t, std::span<const Ray> rays, StreamQuery query,
+                           const Arrive& arrive) const {
+  if (!settled(t, query)) return false;
+  if (arrive(t) == Next::done) return true;
+  look_behind(t, rays[t.ray]);
+  return false;
+}
+
+void StreamEngine::collect(Slot& slot, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
   if (!slot.batch.finished(patience)) throw Error("the GPU did not answer within 10 seconds; use --tracer embree");
-  std::vector<Next> next(slot.travellers.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, next.size(), block), [&](const auto& range) {
+  std::vector<char> done(slot.travellers.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, done.size(), block), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      Traveller& t = slot.travellers[i];
+      StreamTraveller& t = slot.travellers[i];
       const auto [found_t, rank] = slot.batch.answers()[i];
       const bool nearer = t.best_rank == no_id || found_t < t.best_t || (found_t == t.best_t && rank < t.best_rank);
       if (rank != no_id && nearer) {
         t.best_t = found_t, t.best_rank = rank;
         t.world.tmax = std::min(t.world.tmax, t.frame.to_world(found_t + frame_slack(found_t)));
       }
-      next[i] = settled(t, query) ? arrive(t) : Next::again;
+      done[i] = arrived(t, rays, query, arrive);
     }
   });
-  for (std::size_t i = 0; i < next.size(); ++i)
-    if (next[i] == Next::again) again.push_back(slot.travellers[i]);
+  for (std::size_t i = 0; i < done.size(); ++i)
+    if (!done[i]) again_.push_back(slot.travellers[i]);
+}
+
+/// First those who must go on, then new ones.
+void StreamEngine::fill(Slot& slot, std::span<const Ray> rays, std::size_t& next) {
+  const std::size_t old = std::min(again_.size(), batch_rays());
+  slot.travellers.assign(again_.end() - static_cast<std::ptrdiff_t>(old), again_.end());
+  again_.resize(again_.size() - old);
+  for (; slot.travellers.size() < batch_rays() && next < rays.size(); ++next)
+    if (is_valid(rays[next])) slot.travellers.push_back(set_out(static_cast<std::uint32_t>(next), rays[next]));
 }
 
 void StreamEngine::trace(std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
-  std::vector<Traveller> again;
-  std::deque<Slot*> free, busy;
-  std::size_t next = 0;
-  const std::size_t wanted =
-      std::min<std::size_t>(static_cast<std::size_t>(options_.in_flight), rays.size() / batch_rays() + 1);
+  again_.clear();
+  const std::size_t wanted = std::min(static_cast<std::size_t>(options_.in_flight), rays.size() / batch_rays() + 1);
   while (slots_.size() < wanted) slots_.push_back(std::make_unique<Slot>(side_));
+  std::deque<Slot*> free, busy;
   for (const auto& slot : slots_) free.push_back(slot.get());
-  while (next < rays.size() || !again.empty() || !busy.empty()) {
-    if ((next < rays.size() || !again.empty()) && !free.empty()) {
-      Slot& slot = *free.front();
-      slot.travellers.clear();
-      while (slot.travellers.size() < batch_rays() && !again.empty())
-        slot.travellers.push_back(again.back()), again.pop_back();
-      for (; slot.travellers.size() < batch_rays() && next < rays.size(); ++next)
-        if (is_valid(rays[next])) slot.travellers.push_back(set_out(static_cast<std::uint32_t>(next), rays[next]));
-      free.pop_front();
+  for (std::size_t next = 0; next < rays.size() || !again_.empty() || !busy.empty();) {
+    const bool more = next < rays.size() || !again_.empty();
+    auto& from = more && !free.empty() ? free : busy;
+    Slot& slot = *from.front();
+    from.pop_front();
+    if (&from == &free) {
+      fill(slot, rays, next);
       send(slot, query);
       busy.push_back(&slot);
     } else {
-      collect(*busy.front(), query, arrive, again);
-      free.push_back(busy.front());
-      busy.pop_front();
+      collect(slot, rays, query, arrive);
+      free.push_back(&slot);
     }
   }
   context_.check_errors("tracing");

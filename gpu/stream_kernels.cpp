@@ -1,56 +1,21 @@
 #include "gpu/stream_kernels.h"
 
 #include <chrono>
-#include <cstdio>
+
+#include "gpu/kernel_program.h"
 
 namespace rayengine {
-namespace {
-
-/// Locations in gpu/shaders/stream/ray.glsl.
-enum : GLint { round_location = 1, type_location = 2, types_location = 3 };
-enum : GLuint { ranges_unit = 5, primitives_unit = 6, forms_unit = 7 };
-
-std::string form_define(QuadricType type) {
-  const QuadricMatrix m = unit_matrix(type);
-  char text[120];
-  std::snprintf(text, sizeof text, "FORM=%.1f, %.1f, %.1f, %.1f, %.1f", m[0], m[4], m[7], m[8], m[9]);
-  return text;
-}
-
-std::vector<std::string> quadric_defines(QuadricType type) {
-  switch (type) {
-    case QuadricType::general: return {"GENERAL"};
-    case QuadricType::plane: return {"PLANE", form_define(type)};
-    case QuadricType::disk: return {"DISK", form_define(type)};
-    case QuadricType::saddle: return {"SADDLE", form_define(type)};
-    case QuadricType::sphere: return {form_define(type)};
-    case QuadricType::cone: return {"CAPS", "CONE", form_define(type)};
-    default: return {"CAPS", form_define(type)};
-  }
-}
-
-Program make_kernel(KernelType type, StreamQuery query, const std::vector<std::string>& defines) {
-  const bool triangle = type == TreeletPrimitive::triangle;
-  Stage stage{0, {"accel/kernels/prelude.glsl"}, defines};
-  stage.sources.push_back(triangle ? "accel/kernels/triangle.glsl" : "accel/kernels/quadric.glsl");
-  stage.sources.insert(stage.sources.end(), {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/nearest.glsl"});
-  stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.frag.glsl" : "gpu/shaders/stream/quadric.frag.glsl");
-  if (query == StreamQuery::any) stage.defines.push_back("ANY_HIT");
-  if (triangle) return make_screen_program("triangle", std::move(stage));
-  const auto quadric = static_cast<QuadricType>(type);
-  for (std::string& define : quadric_defines(quadric)) stage.defines.push_back(std::move(define));
-  return make_screen_program(to_string(quadric), std::move(stage));
-}
-
-}  // namespace
 
 StreamKernels::StreamKernels(const SceneTextures& scene, StreamQuery query, const std::vector<std::string>& defines) {
   const auto start = std::chrono::steady_clock::now();
   Stage stage{0, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/select.frag.glsl"}, {}};
   if (query == StreamQuery::any) stage.defines.push_back("ANY_HIT");
+  std::vector<std::string> all = defines;
+  all.insert(all.end(), stage.defines.begin(), stage.defines.end());
   select_.emplace(make_screen_program("select", std::move(stage)));
   for (const KernelType type : scene.types) {
-    tests_.push_back(make_kernel(type, query, defines));
+    tests_.push_back(
+        make_kernel_program(type, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/nearest.glsl"}, all));
     selected_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
   }
   compile_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

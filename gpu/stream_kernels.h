@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "gpu/device_engine.h"
 #include "gpu/program.h"
 #include "gpu/scene_textures.h"
 #include "gpu/stream_batch.h"
 
 namespace rayengine {
-
-enum class StreamQuery { closest, any };
 
 /// The passes that answer a batch: for each place in the rays' lists and each type of primitive, one that selects the
 /// rays in that state by depth, and one that tests them under an EQUAL depth test.

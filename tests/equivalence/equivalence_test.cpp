@@ -32,7 +32,7 @@ class Equivalence : public testing::TestWithParam<std::tuple<const char*, Case>>
   void expect_equivalent(Precision precision, std::span<const Ray> rays, RayClass ray_class);
 };
 INSTANTIATE_TEST_SUITE_P(Tracers, Equivalence,
-                         testing::Combine(testing::Values("embree", "stream"), testing::ValuesIn(test::all_cases())),
+                         testing::Combine(testing::Values("embree", "stream", "objects"), testing::ValuesIn(test::all_cases())),
                          [](const auto& info) {
                            return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
                          });

@@ -1,11 +1,10 @@
-#include "gpu/stream_tracer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "cpu/reference_tracer.h"
+#include "gpu/stream_tracer.h"
 
 namespace rayengine {
 namespace {

@@ -1,5 +1,5 @@
-// The ray of this fragment and the nearest hit found so far. A kernel's main loops over the primitives of its type in the
-// ray's treelet; only rays in its state get here.
+// The ray of this fragment and the nearest hit found so far. A kernel's main loops over a range of primitives of its type:
+// what the ray's treelet holds, and only rays in that state get here; or, where OBJECT is defined, one object for all rays.
 layout(early_fragment_tests) in;
 layout(location = 0) out uvec2 result;
 
@@ -24,20 +24,24 @@ uvec2 begin() {
   floor_rank = texelFetch(entries, at, 0).x;
   best_t = uintBitsToFloat(hit.x);
   best_rank = hit.y;
+#ifdef OBJECT
+  return object_range;
+#else
   return range_of(texelFetch(lists, at, 0)[round]);
+#endif
 }
 
-// Keeps a hit if it is in the interval and nearer than the best, or as near and of lower rank.
-void consider(float t, uint rank) {
+// Keeps a hit, and says so, if it is in the interval and nearer than the best, or as near and of lower rank.
+bool consider(float t, uint rank) {
 #ifdef MUTANT_INDEX
   rank ^= 1u;
 #endif
   bool inside = t <= tmax && (t > tmin || (t == tmin && rank > floor_rank));
   bool nearer = t < best_t || (t == best_t && rank < best_rank);
-  if (inside && nearer) {
-    best_t = t;
-    best_rank = rank;
-  }
+  if (!inside || !nearer) return false;
+  best_t = t;
+  best_rank = rank;
+  return true;
 }
 
 // For any-hit queries one is enough.

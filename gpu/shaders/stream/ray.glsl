@@ -11,6 +11,8 @@ layout(location = 1) uniform int round;  // the place in their lists at which al
 layout(location = 2) uniform int type;   // the place of this pass's type among the scene's
 layout(location = 3) uniform int types;
 
+layout(location = 4) uniform uvec2 object_range;  // first primitive and count, for tracers that go by objects
+
 const uint none = 0xFFFFFFFFu;
 
 uvec2 range_of(uint treelet) { return texelFetch(ranges, int(treelet) * types + type).xy; }

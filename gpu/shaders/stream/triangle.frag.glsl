@@ -1,6 +1,17 @@
 // Three texels a triangle: its corners, and in the first one's w its rank.
 layout(binding = 6) uniform usamplerBuffer triangles;
 
+#ifdef HALF
+int nearest;
+
+vec3 corner(int i) { return uintBitsToFloat(texelFetch(triangles, nearest + i).xyz); }
+
+vec3 best_normal() {
+  vec3 a = corner(0);
+  return normalize(cross(corner(1) - a, corner(2) - a));
+}
+#endif
+
 void main() {
   uvec2 range = begin();
   int stop = 3 * int(range.x + range.y);
@@ -13,7 +24,11 @@ void main() {
     float v;
     bool hit;
     triangle(origin, direction, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), t, u, v, hit);
-    if (hit) consider(t, a.w);
+    if (!hit) continue;
+    bool kept = consider(t, a.w);
+#ifdef HALF
+    if (kept) nearest = i;
+#endif
   }
   end();
 }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gpu/program.h"
+#include "gpu/scene_textures.h"
+
+namespace rayengine {
+
+/// Texture units and uniform locations that the kernels in gpu/shaders/stream share.
+enum KernelUnit : GLuint { entries_unit = 3, hits_unit = 4, ranges_unit = 5, primitives_unit = 6, forms_unit = 7 };
+enum KernelLocation : GLint { round_location = 1, type_location = 2, types_location = 3, object_range_location = 4 };
+
+/// The intersection shader for one type of primitive, over the shared kernel source. `ray_sources` say how rays and
+/// hits are read and written: begin(), consider(), enough() and end().
+Program make_kernel_program(KernelType type, const std::vector<std::string_view>& ray_sources,
+                            std::vector<std::string> defines);
+
+}  // namespace rayengine

@@ -1,0 +1,105 @@
+#include "gpu/objects_engine.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "gpu/kernel_program.h"
+
+namespace rayengine {
+namespace {
+
+constexpr GLsizei side = 256;
+
+/// All primitives as one list without bounds, quadrics by type.
+Treelets list_of(const Geometry& g) {
+  Treelets list;
+  Box bounds;
+  for (const TreeletPrimitive& p : treelet_primitives(g))
+    if (p.bounds.finite()) bounds.add(p.bounds);
+  list.frame = LocalFrame(bounds);
+  list.triangles.resize(g.triangles.size());
+  list.quadrics.resize(g.quadrics.size());
+  std::iota(list.triangles.begin(), list.triangles.end(), 0u);
+  std::iota(list.quadrics.begin(), list.quadrics.end(), 0u);
+  std::stable_sort(list.quadrics.begin(), list.quadrics.end(),
+                   [&](auto a, auto b) { return g.quadrics[a].type < g.quadrics[b].type; });
+  list.unbounded.triangle_count = static_cast<std::uint32_t>(list.triangles.size());
+  list.unbounded.quadric_count = static_cast<std::uint32_t>(list.quadrics.size());
+  return list;
+}
+
+Program make_program(KernelType type, Precision precision) {
+  if (precision == Precision::half)
+    return make_kernel_program(type, {"gpu/shaders/objects/half.glsl"}, {"OBJECT", "HALF"});
+  return make_kernel_program(type, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/nearest.glsl"}, {"OBJECT"});
+}
+
+}  // namespace
+
+ObjectsEngine::ObjectsEngine(std::shared_ptr<const Geometry> geometry, Precision precision, int device)
+    : context_(device),
+      scene_(flatten(std::move(geometry))),
+      list_(list_of(*scene_.geometry)),
+      textures_(upload(scene_, list_, context_.info())),
+      passes_(passes()) {
+  for (const KernelType type : textures_.types) programs_.push_back(make_program(type, precision));
+  batch_.emplace(side, precision == Precision::half);
+  context_.check_errors("the upload of the scene");
+}
+
+/// In the order of types, so that programs change rarely.
+std::vector<ObjectsEngine::Pass> ObjectsEngine::passes() const {
+  std::vector<Pass> result;
+  const auto& owners = scene_.geometry->triangle_object;
+  for (std::uint32_t i = 0; i < owners.size(); ++i)
+    if (i > 0 && owners[i] == owners[i - 1])
+      ++result.back().count;
+    else
+      result.push_back({0, i, 1});
+  for (std::uint32_t i = 0; i < list_.quadrics.size(); ++i) {
+    const auto type = static_cast<KernelType>(scene_.geometry->quadrics[list_.quadrics[i]].type);
+    const auto place = std::find(textures_.types.begin(), textures_.types.end(), type) - textures_.types.begin();
+    result.push_back({static_cast<std::size_t>(place), i, 1});
+  }
+  return result;
+}
+
+void ObjectsEngine::run(std::span<Traveller> travellers) {
+  glBindVertexArray(vertices_.id());
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  batch_->upload(travellers);
+  textures_.forms.bind(forms_unit);
+  std::size_t current = textures_.types.size();
+  for (const Pass& pass : passes_) {
+    if (pass.type != std::exchange(current, pass.type)) {
+      programs_[pass.type].use();
+      const bool triangles = textures_.types[pass.type] == TreeletPrimitive::triangle;
+      (triangles ? textures_.triangles : textures_.quadrics).bind(primitives_unit);
+    }
+    batch_->turn();
+    glUniform2ui(object_range_location, pass.first, pass.count);
+    draw_everywhere();
+  }
+  batch_->read_back(travellers);
+}
+
+void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
+  std::vector<Traveller> travellers;
+  for (std::size_t next = 0; next < rays.size() || !travellers.empty();) {
+    for (; next < rays.size() && travellers.size() < batch_rays(); ++next)
+      if (is_valid(rays[next])) {
+        Traveller& t = travellers.emplace_back();
+        t.ray = static_cast<std::uint32_t>(next);
+        t.frame = in_frame(list_.frame, rays[next]);
+      }
+    run(travellers);
+    std::erase_if(travellers, [&](Traveller& t) {
+      if (arrive(t) == Next::done) return true;
+      look_behind(t);
+      return false;
+    });
+  }
+  context_.check_errors("tracing");
+}
+
+}  // namespace rayengine

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "accel/treelets.h"
+#include "gpu/device_engine.h"
+#include "gpu/objects_batch.h"
+#include "gpu/program.h"
+#include "gpu/scene_textures.h"
+
+namespace rayengine {
+
+/// The objects tracer's loop (see make_objects_tracer).
+class ObjectsEngine : public DeviceEngine {
+ public:
+  ObjectsEngine(std::shared_ptr<const Geometry> geometry, Precision precision, int device);
+
+  void trace(std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) override;
+
+  const GpuInfo& gpu() const override { return context_.info(); }
+  std::size_t batch_rays() const override { return batch_->capacity(); }
+  std::size_t bytes() const override { return textures_.bytes; }
+
+ private:
+  /// One object of one type, or what there is of it in a run.
+  struct Pass {
+    std::size_t type;  // index into textures_.types
+    std::uint32_t first, count;
+  };
+
+  std::vector<Pass> passes() const;
+  void run(std::span<Traveller> travellers);
+
+  Context context_;
+  FlatScene scene_;
+  Treelets list_;  // all primitives, by type, in no structure
+  SceneTextures textures_;
+  std::vector<Program> programs_;  // by type
+  std::vector<Pass> passes_;
+  VertexArray vertices_ = make_vertex_array();
+  std::optional<ObjectsBatch> batch_;
+};
+
+}  // namespace rayengine

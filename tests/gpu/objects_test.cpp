@@ -1,0 +1,52 @@
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "cpu/reference_tracer.h"
+#include "engine/measure/rays.h"
+#include "gpu/objects_tracer.h"
+
+namespace rayengine {
+namespace {
+
+std::shared_ptr<const Geometry> one_of_each_type() {
+  GeometryBuilder builder;
+  for (int i = 0; i < 9; ++i) {
+    const auto type = static_cast<QuadricType>(i);
+    if (type != QuadricType::plane)
+      builder.add(QuadricShape{type, false, {}, {}, {}}, 0, Affine::translate({2.5 * i, 0, 0}));
+  }
+  builder.add(QuadricShape{QuadricType::cylinder, true, {}, {}, {}}, 0, Affine::translate({0, 3, 0}));
+  builder.add(Mesh{{{5, 3, 0}, {8, 3, 0}, {5, 5, 1}}, {}, {{0, 1, 2}}});
+  return builder.build();
+}
+
+TEST(Objects, HalvesAreRightToTheirPrecision) {
+  const auto geometry = one_of_each_type();
+  const auto objects = make_objects_tracer(geometry, Precision::half);
+  const auto oracle = make_reference_tracer(geometry);
+  const auto rays = random_rays(geometry->bounds, 4000);
+  std::vector<Hit> ours(rays.size()), exact(rays.size());
+  objects->closest(rays, ours, RayClass::primary);
+  oracle->closest(rays, exact, RayClass::primary);
+  std::size_t same = 0, hits = 0, turned = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    hits += exact[i].hit();
+    if (!exact[i].hit() || exact[i].object != ours[i].object || exact[i].primitive != ours[i].primitive) continue;
+    const bool same_root = std::abs(ours[i].t - exact[i].t) * glm::length(rays[i].direction) < 0.1;
+    same += same_root;
+    turned += same_root && glm::dot(ours[i].normal, exact[i].normal) < 0.95f;
+  }
+  ASSERT_GT(hits, 300u);
+  EXPECT_GT(same, hits * 97 / 100);
+  EXPECT_LT(turned, hits / 50);
+  EXPECT_EQ(objects->limits().quadric_roundoff, 0x1p-11);
+}
+
+TEST(Objects, HalvesListNoHits) {
+  const auto objects = make_objects_tracer(one_of_each_type(), Precision::half);
+  EXPECT_THROW(objects->all({}), Error);
+}
+
+}  // namespace
+}  // namespace rayengine
