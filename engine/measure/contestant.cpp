@@ -98,6 +98,10 @@ class BareContestant : public Contestant {
 
 std::span<const std::string_view> yardsticks() { return yardstick_names; }
 
+std::unique_ptr<Contestant> make_contestant(std::unique_ptr<Tracer> tracer) {
+  return std::make_unique<TracerContestant>(std::move(tracer));
+}
+
 std::unique_ptr<Contestant> make_contestant(const std::string& name, std::shared_ptr<const Geometry> geometry,
                                             Precision precision, int threads) {
   for (std::size_t i = 0; i < yardstick_names.size(); ++i) {
@@ -106,7 +110,7 @@ std::unique_ptr<Contestant> make_contestant(const std::string& name, std::shared
     if (!held || !BareEmbree::holds(*geometry, yardstick_shapes[i])) return nullptr;
     return std::make_unique<BareContestant>(name, std::move(geometry), yardstick_shapes[i], precision);
   }
-  return std::make_unique<TracerContestant>(make_tracer(name, std::move(geometry), {precision, threads}));
+  return make_contestant(make_tracer(name, std::move(geometry), {precision, threads}));
 }
 
 }  // namespace rayengine

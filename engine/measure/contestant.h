@@ -33,6 +33,8 @@ class Contestant {
 /// Names of the yardsticks: plain Embree 3 on the triangles, on Embree's own spheres, and on tessellated spheres.
 std::span<const std::string_view> yardsticks();
 
+std::unique_ptr<Contestant> make_contestant(std::unique_ptr<Tracer> tracer);
+
 /// Makes a tracer or a yardstick by name, at a precision. Null when a yardstick cannot hold this geometry or precision.
 /// Throws Error like make_tracer().
 std::unique_ptr<Contestant> make_contestant(const std::string& name, std::shared_ptr<const Geometry> geometry,

@@ -124,6 +124,13 @@ Result compare_with_progress(const Options& o, Tracer& tracer, Tracer& oracle, c
   return {std::string(tracer.name()), tracer.precision(), compare(asked, exact, geometry, rays, RayClass::primary)};
 }
 
+void require_bounds(const std::vector<Result>& results) {
+  for (const Result& result : results)
+    if (const std::uint64_t beyond = result.comparison.beyond_bounds)
+      throw Error(fmt::format("{} of {} answers by '{}' are beyond the stated bounds: replay them with --save-rays",
+                              beyond, result.comparison.rays, result.tracer));
+}
+
 void check(const Options& o) {
   if (!o.json.empty()) check_output(o.json);
   if (!o.save.empty()) check_output(o.save);
@@ -150,7 +157,8 @@ int run(const Options& o) {
   std::size_t row = 0;
   for (const auto& tracer : tracers)
     if (tracer.get() != &oracle) print_first(*tracer, oracle, rays, results[row++].comparison);
-  return std::ranges::any_of(results, [](const Result& result) { return result.comparison.beyond_bounds > 0; }) ? 1 : 0;
+  require_bounds(results);
+  return 0;
 }
 
 }  // namespace

@@ -18,21 +18,24 @@ struct Options {
   std::filesystem::path scene, json;
 };
 
-/// A tracer holds a precision when it can be made with it, be it on nothing.
-std::vector<std::string> precisions_of(std::string_view tracer) {
+/// A tracer holds a precision when it can be made with it, be it on nothing; it says why when it can be made with none.
+Json describe(const TracerInfo& info) {
   const std::shared_ptr<const Geometry> nothing = GeometryBuilder().build();
-  std::vector<std::string> held;
+  Json held = Json::array();
+  std::string why_not;
   for (const Precision precision : {Precision::half, Precision::fast, Precision::robust, Precision::certified}) try {
-      if (make_tracer(tracer, nothing, {precision})->precision() == precision) held.emplace_back(to_string(precision));
-    } catch (const Error&) {  // it says which it holds, as we do here
+      if (make_tracer(info.name, nothing, {precision})->precision() == precision) held.push_back(to_string(precision));
+    } catch (const Error& error) {
+      why_not = error.what();
     }
-  return held;
+  Json tracer = {{"name", info.name}, {"precisions", held}, {"summary", info.summary}};
+  if (held.empty()) tracer["unavailable"] = why_not;
+  return tracer;
 }
 
 Json tracers() {
   Json all = Json::array();
-  for (const TracerInfo& info : tracer_list())
-    all.push_back({{"name", info.name}, {"precisions", precisions_of(info.name)}, {"summary", info.summary}});
+  for (const TracerInfo& info : tracer_list()) all.push_back(describe(info));
   return all;
 }
 
@@ -53,17 +56,28 @@ Json counts(const Geometry& geometry) {
 
 Json corner(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
 
-/// Bytes a primitive, of the arrays that only primitives of its type need.
-Json memory(const Geometry& g) {
-  const auto bytes = [](const auto&... arrays) { return (std::size_t{0} + ... + (arrays.size() * sizeof(arrays[0]))); };
+/// What the arrays of a geometry and of its groups hold together, each group once.
+struct Totals {
+  std::size_t triangles = 0, vertices = 0, quadrics = 0, triangle_bytes = 0, quadric_bytes = 0;
+
+  void add(const Geometry& g) {
+    const auto bytes = [](const auto&... arrays) {
+      return (std::size_t{0} + ... + (arrays.size() * sizeof(arrays[0])));
+    };
+    triangles += g.triangles.size(), vertices += g.vertices.size(), quadrics += g.quadrics.size();
+    triangle_bytes += bytes(g.vertices, g.exact_vertices, g.normals, g.triangles, g.triangle_object);
+    quadric_bytes += bytes(g.quadrics, g.forms);
+    for (const auto& group : g.groups) add(*group);
+  }
+};
+
+Json memory(const Geometry& g, const Totals& totals) {
+  const auto each = [](std::size_t bytes, std::size_t count) {
+    return static_cast<double>(bytes) / static_cast<double>(count);
+  };
   Json memory = {{"geometry_bytes", g.bytes()}};
-  if (!g.triangles.empty())
-    memory["bytes_per_triangle"] =
-        static_cast<double>(bytes(g.vertices, g.exact_vertices, g.normals, g.triangles, g.triangle_object)) /
-        static_cast<double>(g.triangles.size());
-  if (!g.quadrics.empty())
-    memory["bytes_per_quadric"] =
-        static_cast<double>(bytes(g.quadrics, g.forms)) / static_cast<double>(g.quadrics.size());
+  if (totals.triangles) memory["bytes_per_triangle"] = each(totals.triangle_bytes, totals.triangles);
+  if (totals.quadrics) memory["bytes_per_quadric"] = each(totals.quadric_bytes, totals.quadrics);
   if (!g.instances.empty()) memory["bytes_per_instance"] = sizeof(Instance);
   return memory;
 }
@@ -71,14 +85,16 @@ Json memory(const Geometry& g) {
 Json describe(const std::filesystem::path& file, const LoadedScene& loaded) {
   const Scene& scene = loaded.scene;
   const Geometry& geometry = *scene.geometry;
+  Totals totals;
+  totals.add(geometry);
   return {{"file", file.string()},
           {"load_s", loaded.seconds},
           {"objects", geometry.objects.size()},
           {"objects_by_type", counts(geometry)},
-          {"triangles", geometry.triangles.size()},
-          {"vertices", geometry.vertices.size()},
+          {"triangles", totals.triangles},
+          {"vertices", totals.vertices},
           {"vertices_need_double", !geometry.exact_vertices.empty()},
-          {"quadrics", geometry.quadrics.size()},
+          {"quadrics", totals.quadrics},
           {"instances", geometry.instances.size()},
           {"groups", geometry.groups.size()},
           {"primitives", geometry.primitive_count},
@@ -86,7 +102,7 @@ Json describe(const std::filesystem::path& file, const LoadedScene& loaded) {
           {"lights", scene.lights.size()},
           {"size", {scene.camera.size.x, scene.camera.size.y}},
           {"bounds", {corner(geometry.bounds.lower), corner(geometry.bounds.upper)}},
-          {"memory", memory(geometry)},
+          {"memory", memory(geometry, totals)},
           {"notes", scene.notes}};
 }
 
@@ -104,10 +120,13 @@ void print(const Json& json, int indent = 0) {
 }
 
 void print_tracers(const Json& tracers) {
-  for (const Json& tracer : tracers)
-    std::cout << fmt::format("tracer {:<15} {} ({})\n", tracer["name"].get<std::string>(),
-                             tracer["summary"].get<std::string>(),
-                             fmt::join(tracer["precisions"].get<std::vector<std::string>>(), ", "));
+  for (const Json& tracer : tracers) {
+    const std::string precisions =
+        fmt::format("{}", fmt::join(tracer["precisions"].get<std::vector<std::string>>(), ", "));
+    std::cout << fmt::format(
+        "tracer {:<15} {} ({})\n", tracer["name"].get<std::string>(), tracer["summary"].get<std::string>(),
+        tracer.contains("unavailable") ? "not here: " + tracer["unavailable"].get<std::string>() : precisions);
+  }
 }
 
 int run(const Options& o) {
