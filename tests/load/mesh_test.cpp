@@ -262,7 +262,7 @@ TEST_F(MeshFile, NeverCrashesOnDamage) {
       {"a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"}};
   int loaded = 0, rejected = 0;
   for (const auto& [name, content] : files)
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < 60; ++round) {
       std::string damaged = content;
       for (int i = 0; i < 1 + round % 4; ++i) damaged[random() % damaged.size()] = static_cast<char>(random());
       try {
@@ -274,8 +274,8 @@ TEST_F(MeshFile, NeverCrashesOnDamage) {
         ++rejected;
       }
     }
-  EXPECT_GT(loaded, 100);
-  EXPECT_GT(rejected, 100);
+  EXPECT_GT(loaded, 20);
+  EXPECT_GT(rejected, 20);
 }
 
 TEST_F(MeshFile, LoadsAMillionTriangles) {
