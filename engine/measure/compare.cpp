@@ -1,19 +1,18 @@
 #include "engine/measure/compare.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include "engine/measure/bound.h"
+#include "engine/measure/doubt.h"
 
 namespace rayengine {
 namespace {
 
-constexpr std::size_t first_count = 16;  // rays beyond bounds that are named
-constexpr std::size_t block = 256;       // doubtful rays that are asked again together
+constexpr std::size_t first_count = 16;                 // rays beyond bounds that are named
+constexpr std::size_t block = 1024;                     // doubtful rays that are asked again together
+constexpr double parts_of_bound[]{1, 0.125, 0.015625};  // small things lie within the bound
 
 /// What a tracer cannot have answered: found again where it wrote nothing.
 Hit poison() {
@@ -46,50 +45,6 @@ double bound_of(const Geometry& geometry, const Limits& limits, const Ray& ray, 
   return bound;
 }
 
-/// `bound` across the ray, as it shows in t on a plane surface with the exact hit's normal.
-double in_t(double bound, const Ray& ray, const Hit& exact) {
-  const double slope = std::abs(glm::dot(glm::dvec3(exact.normal), ray.direction));
-  return slope > 0 ? bound / slope : infinity;
-}
-
-/// A ray whose answers differ, or whose t differ by more than a plane surface explains.
-struct Doubt {
-  std::size_t ray;
-  double bound;  ///< how far rounding can move it where it hits
-  double t;      ///< where that is
-};
-
-Ray with_interval(Ray ray, double widening) {
-  ray.tmin -= widening;
-  ray.tmax = std::max(ray.tmax + widening, ray.tmin);
-  return ray;
-}
-
-/// Two unit vectors across `d`, which has unit length.
-std::array<glm::dvec3, 2> across(const glm::dvec3& d) {
-  const glm::dvec3 aside = std::abs(d.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 right = glm::normalize(glm::cross(d, aside));
-  return {right, glm::cross(right, d)};
-}
-
-/// What the tracer may have seen instead of the ray: its interval moved by the bound; the ray shifted across itself, or
-/// turned about its origin, in eight directions, by the bound and by small parts of it, as small things lie within it.
-std::vector<Ray> neighbours(const Ray& ray, const Doubt& doubt) {
-  const double length = glm::length(ray.direction), step = doubt.bound / length;
-  const auto [right, up] = across(ray.direction / length);
-  std::vector<Ray> rays{with_interval(ray, step), with_interval(ray, -step)};
-  for (const double part : {1.0, 0.125, 0.015625})
-    for (int i = 0; i < 8; ++i) {
-      const double angle = i * std::numbers::pi / 4;
-      const glm::dvec3 move = part * doubt.bound * (std::cos(angle) * right + std::sin(angle) * up);
-      Ray shifted = ray, turned = ray;
-      shifted.origin += move;
-      if (doubt.t > 0) turned.direction += move / doubt.t;
-      rays.insert(rays.end(), {with_interval(shifted, step), with_interval(shifted, -step), turned});
-    }
-  return rays;
-}
-
 class Judge {
  public:
   Judge(Tracer& oracle, const Geometry& geometry, const Limits& limits, std::span<const Ray> rays, RayClass ray_class)
@@ -98,8 +53,8 @@ class Judge {
   Comparison judge(std::span<const Hit> hits, std::span<const Hit> exact) {
     result_.rays = rays_.size();
     for (std::size_t i = 0; i < rays_.size(); ++i) look(i, hits[i], exact[i]);
-    for (std::size_t i = 0; i < doubts_.size(); i += block)
-      ask_again(std::span(doubts_).subspan(i, std::min(block, doubts_.size() - i)), hits, exact);
+    for (const double part : parts_of_bound) ask_again(part);
+    for (const Doubt& doubt : doubts_) beyond_.push_back(doubt.index);
     std::sort(beyond_.begin(), beyond_.end());
     result_.beyond_bounds = beyond_.size();
     beyond_.resize(std::min(beyond_.size(), first_count));
@@ -130,11 +85,7 @@ class Judge {
 
   void count_difference(std::size_t i, const Hit& hit, const Hit& exact) {
     ++(hit.hit() && exact.hit() ? result_.wrong_ids : hit.hit() ? result_.false_hits : result_.false_misses);
-    doubt(i, hit, exact, bound_of(geometry_, limits_, rays_[i], hit, exact));
-  }
-
-  void doubt(std::size_t i, const Hit& hit, const Hit& exact, double bound) {
-    doubts_.push_back({i, bound, std::min(hit.t, exact.t)});
+    doubts_.push_back({i, rays_[i], hit, exact, bound_of(geometry_, limits_, rays_[i], hit, exact)});
   }
 
   void look_at_t(std::size_t i, const Hit& hit, const Hit& exact) {
@@ -145,7 +96,8 @@ class Judge {
       return;
     }
     const double bound = bound_of(geometry_, limits_, rays_[i], hit, exact);
-    if (!(difference <= in_t(bound, rays_[i], exact) + exact.error)) doubt(i, hit, exact, bound);
+    if (!(difference <= in_t(bound, rays_[i], exact) + exact.error))
+      doubts_.push_back({i, rays_[i], hit, exact, bound});
   }
 
   void record(double difference, double t) {
@@ -155,52 +107,31 @@ class Judge {
     ++result_.ulps[bin];
   }
 
-  void ask_again(std::span<const Doubt> doubts, std::span<const Hit> hits, std::span<const Hit> exact) {
+  /// Asks the oracle about the neighbours of all rays in doubt, and keeps those that they do not explain.
+  void ask_again(double part) {
+    std::vector<Doubt> kept;
+    for (std::size_t first = 0; first < doubts_.size(); first += block) {
+      const auto some = std::span(doubts_).subspan(first, std::min(block, doubts_.size() - first));
+      const std::vector<Hit> answers = ask_around(some, part);
+      const std::size_t count = answers.size() / some.size();
+      for (std::size_t k = 0; k < some.size(); ++k)
+        if (explained(some[k], std::span(answers).subspan(k * count, count), geometry_, oracle_))
+          result_.ambiguous += !same_ids(some[k].hit, some[k].exact);
+        else
+          kept.push_back(some[k]);
+    }
+    doubts_ = std::move(kept);
+  }
+
+  std::vector<Hit> ask_around(std::span<const Doubt> doubts, double part) {
     std::vector<Ray> rays;
     for (const Doubt& doubt : doubts) {
-      const std::vector<Ray> some = neighbours(rays_[doubt.ray], doubt);
+      const std::vector<Ray> some = neighbours(doubt, part);
       rays.insert(rays.end(), some.begin(), some.end());
     }
     std::vector<Hit> answers(rays.size());
     oracle_.closest(rays, answers, class_);
-    const std::size_t count = rays.size() / doubts.size();
-    for (std::size_t k = 0; k < doubts.size(); ++k) {
-      const std::size_t i = doubts[k].ray;
-      decide(doubts[k], hits[i], exact[i], std::span(answers).subspan(k * count, count));
-    }
-  }
-
-  void decide(const Doubt& doubt, const Hit& hit, const Hit& exact, std::span<const Hit> answers) {
-    const bool differs = !same_ids(hit, exact);
-    const bool explained =
-        changes(exact, answers) || (differs ? as_near(doubt, hit, exact) : among(doubt, hit, exact, answers));
-    if (!explained)
-      beyond_.push_back(doubt.ray);
-    else if (differs)
-      ++result_.ambiguous;
-  }
-
-  static bool changes(const Hit& exact, std::span<const Hit> answers) {
-    return std::any_of(answers.begin(), answers.end(), [&](const Hit& a) { return !same_ids(a, exact); });
-  }
-
-  double slack(const Doubt& doubt, const Hit& exact) const {
-    return in_t(doubt.bound, rays_[doubt.ray], exact) + exact.error;
-  }
-
-  /// Two surfaces nearer to each other than rounding tells apart are as ambiguous as a ray that nearly misses one, if
-  /// the ray meets both: the neighbour of a coplanar triangle is not.
-  bool as_near(const Doubt& doubt, const Hit& hit, const Hit& exact) const {
-    if (!hit.hit() || !exact.hit() || !(std::abs(hit.t - exact.t) <= slack(doubt, exact))) return false;
-    const HitLists met = oracle_.all(rays_.subspan(doubt.ray, 1));
-    return std::any_of(met.hits.begin(), met.hits.end(), [&](const Hit& h) { return same_ids(h, hit); });
-  }
-
-  /// Whether t lies among those that the moved rays got, which on a curved surface spread further than on a plane one.
-  bool among(const Doubt& doubt, const Hit& hit, const Hit& exact, std::span<const Hit> answers) const {
-    const auto [low, high] =
-        std::minmax_element(answers.begin(), answers.end(), [](const Hit& a, const Hit& b) { return a.t < b.t; });
-    return low->t - slack(doubt, exact) <= hit.t && hit.t <= high->t + slack(doubt, exact);
+    return answers;
   }
 
   void summarise() {

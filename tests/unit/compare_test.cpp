@@ -169,6 +169,38 @@ TEST(Compare, ForgivesWhatTheExactAnswerItselfIsUnsureOf) {
   EXPECT_EQ(c.beyond_bounds, 0u);
 }
 
+/// An octahedron's upper half over a floor that is split in two triangles.
+std::shared_ptr<const Geometry> tent() {
+  GeometryBuilder builder;
+  builder.add(Mesh{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
+                   {},
+                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 3, 2}, {1, 4, 3}}});
+  return builder.build();
+}
+
+Comparison compare_on_tent(const Ray& ray, const Hit& answer) {
+  const auto geometry = tent();
+  Defective tracer(geometry, [&](std::size_t, Hit& hit) { hit = answer; });
+  return compare(tracer, *make_reference_tracer(geometry), *geometry, {&ray, 1}, RayClass::primary);
+}
+
+TEST(Compare, ExcusesAnyTriangleAtAVertexButNoRayThatSlipsThrough) {
+  const Ray down{{0, 0, 3}, 0, {0, 0, -1}, infinity};
+  const auto answer = [](double t, std::uint32_t triangle) {
+    return Hit{.t = t, .object = 0, .primitive = triangle, .status = status_hit};
+  };
+  EXPECT_EQ(compare_on_tent(down, answer(2, 3)).ambiguous, 1u);
+  EXPECT_EQ(compare_on_tent(down, answer(3, 4)).beyond_bounds, 1u) << "the floor within";
+  EXPECT_EQ(compare_on_tent(down, Hit{}).beyond_bounds, 1u) << "the void beyond";
+  EXPECT_EQ(compare_on_tent(down, answer(2.5, 3)).beyond_bounds, 1u) << "not where the triangle is";
+}
+
+TEST(Compare, DoesNotExcuseTheWrongTriangleOfAPlane) {
+  const Ray up{{0, -0.5, -1}, 0, {0, 0, 1}, infinity};
+  EXPECT_EQ(compare_on_tent(up, Hit{.t = 1, .object = 0, .primitive = 4, .status = status_hit}).beyond_bounds, 1u);
+  EXPECT_EQ(compare_on_tent(up, Hit{.t = 1, .object = 0, .primitive = 5, .status = status_hit}).beyond_bounds, 0u);
+}
+
 TEST(Compare, GivesTheSameAgain) {
   const auto rays = random_rays({glm::dvec3(-6), glm::dvec3(6)}, 500);
   const auto defect = [](std::size_t ray, Hit& hit) {
