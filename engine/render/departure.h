@@ -41,9 +41,18 @@ struct Departure {
     clearance = 4 * s.error + seen;
   }
 
-  Ray ray(const glm::dvec3& direction, double tmax) const {
+  /// Written in place: rays are built by the million, and a copy would cost more than the rest.
+  void start(Ray& ray, const glm::dvec3& direction, double tmax) const {
     const double rise = std::abs(glm::dot(normal, direction));
-    return {position, std::min(tmax, clearance / rise), direction, tmax};
+    ray.origin = position;
+    ray.tmin = std::min(tmax, clearance / rise);
+    ray.direction = direction;
+    ray.tmax = tmax;
+  }
+  Ray ray(const glm::dvec3& direction, double tmax) const {
+    Ray result;
+    start(result, direction, tmax);
+    return result;
   }
 };
 

@@ -42,10 +42,9 @@ Ray TileRenderer::ray(const glm::ivec2& pixel, const glm::dvec2& offset) const {
 }
 
 void TileRenderer::sample(int first, int last) {
-  std::vector<Ray>& rays = waves_.primary();
-  rays.clear();
+  Ray* out = waves_.primary(pixels_.size() * static_cast<std::size_t>(last - first)).data();
   for (const glm::ivec2& p : pixels_)
-    for (int s = first; s < last; ++s) rays.push_back(ray(p, sampler_.offset(p.x, p.y, s)));
+    for (int s = first; s < last; ++s) *out++ = ray(p, sampler_.offset(p.x, p.y, s));
   const glm::vec3* seen = waves_.radiance().data();
   for (glm::dvec3& color : colors_)
     for (int s = first; s < last; ++s) color += *seen++;

@@ -37,11 +37,15 @@ double index_ratio(const Material& m, bool entering) {
 Waves::Waves(const Picture& picture, TracerGate& gate)
     : picture_(picture), gate_(gate), levels_(static_cast<std::size_t>(picture.depth) + 1) {}
 
-std::size_t Waves::Level::wave_end(std::size_t first, std::size_t batch) const {
-  if (paths.size() - first <= batch) return paths.size();
-  const auto sample_changes = [&](std::size_t i) {
-    return i == paths.size() || paths[i].sample != paths[i - 1].sample;
-  };
+void Waves::Queue::reserve(std::size_t more) {
+  if (size + more <= rays.size()) return;
+  rays.resize(size + more);
+  paths.resize(size + more);
+}
+
+std::size_t Waves::Queue::wave_end(std::size_t first, std::size_t batch) const {
+  if (size - first <= batch) return size;
+  const auto sample_changes = [&](std::size_t i) { return i == size || paths[i].sample != paths[i - 1].sample; };
   std::size_t end = first + batch;
   while (end > first && !sample_changes(end)) --end;
   if (end > first) return end;
@@ -49,35 +53,42 @@ std::size_t Waves::Level::wave_end(std::size_t first, std::size_t batch) const {
   return end;
 }
 
+std::span<Ray> Waves::primary(std::size_t count) {
+  Queue& queue = levels_.front();
+  queue.size = 0;
+  queue.reserve(count);
+  queue.size = count;
+  for (std::uint32_t i = 0; i < count; ++i) queue.paths[i] = {glm::vec3(1), i};
+  return {queue.rays.data(), count};
+}
+
 std::span<const glm::vec3> Waves::radiance() {
-  Level& level = levels_.front();
-  level.paths.clear();
-  for (std::uint32_t i = 0; i < level.rays.size(); ++i) level.paths.push_back({glm::vec3(1), i});
-  radiance_.assign(level.rays.size(), glm::vec3(0));
-  rays_[primary_ray] += level.rays.size();
-  trace(0, 0, level.rays.size());
+  const std::size_t count = levels_.front().size;
+  radiance_.assign(count, glm::vec3(0));
+  rays_[primary_ray] += count;
+  trace(0, 0, count);
   return radiance_;
 }
 
 void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
-  const Level& level = levels_[depth];
-  Level* next = depth + 1 < levels_.size() ? &levels_[depth + 1] : nullptr;
-  const std::span<const Ray> rays(level.rays.data() + first, last - first);
+  const Queue& queue = levels_[depth];
+  Queue* next = depth + 1 < levels_.size() ? &levels_[depth + 1] : nullptr;
+  const std::span<const Ray> rays(queue.rays.data() + first, last - first);
   hits_.resize(std::max(hits_.size(), rays.size()));
   gate_.closest(rays, {hits_.data(), rays.size()}, depth ? RayClass::bounce : RayClass::primary);
 
   points_.clear();
-  if (next) next->clear();
-  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], level.paths[first + i], next);
+  if (next) next->size = 0, next->reserve(2 * rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], queue.paths[first + i], next);
   for (const Light& light : picture_.lights) shine(light);
   if (!next) return;
-  for (std::size_t begin = 0, end; begin < next->rays.size(); begin = end) {
+  for (std::size_t begin = 0, end; begin < next->size; begin = end) {
     end = next->wave_end(begin, picture_.limits.batch);
     trace(depth + 1, begin, end);
   }
 }
 
-void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Level* next) {
+void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Queue* next) {
   if (!hit.hit()) {
     invalid_ += (hit.status & status_invalid) != 0;
     radiance_[path.sample] += path.weight * picture_.environment(ray.direction);
@@ -92,7 +103,7 @@ void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Level* next)
   if (next && (material.reflect > 0 || material.transmit > 0)) scatter(ray, surface, point, *next);
 }
 
-void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Level& next) {
+void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next) {
   const Material& material = picture_.materials[point.material];
   const glm::dvec3& d = ray.direction;
   glm::vec3 mirror = point.path.weight * material.reflect;
@@ -111,30 +122,31 @@ void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& poin
   spawn(next, point, outside ? back : reflected(d, surface.normal), mirror, rays_[reflected_ray]);
 }
 
-void Waves::spawn(Level& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
+void Waves::spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
                   std::uint64_t& count) {
   if (!matters(weight)) return;
-  next.add(from.departure.ray(direction, infinity), {weight, from.path.sample});
+  next.add(from.departure, direction, infinity, weight, from.path.sample);
   ++count;
 }
 
 void Waves::shine(const Light& light) {
   const bool is_point = light.type == Light::Type::point;
-  shadow_.clear();
+  // t counts in lengths of the direction: at 1 the ray has reached a point light.
+  const double tmax = is_point ? 1 : infinity;
+  shadow_.size = 0;
+  shadow_.reserve(points_.size());
   for (const LitPoint& p : points_) {
     const glm::dvec3 to_light = is_point ? light.position - p.departure.position : -light.direction;
     if (!(glm::dot(p.normal, to_light) > 0)) continue;
-    const glm::vec3 unit(to_light / std::sqrt(glm::dot(to_light, to_light)));
+    const glm::vec3 unit(to_light * (1 / std::sqrt(glm::dot(to_light, to_light))));
     const Material& material = picture_.materials[p.material];
     const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
-    if (seen == glm::vec3(0)) continue;
-    // t counts in lengths of the direction: at 1 the ray has reached a point light.
-    shadow_.add(p.departure.ray(to_light, is_point ? 1 : infinity), {seen, p.path.sample});
+    if (seen != glm::vec3(0)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
   }
-  rays_[shadow_ray] += shadow_.rays.size();
-  shadow_status_.resize(std::max(shadow_status_.size(), shadow_.rays.size()));
-  gate_.any(shadow_.rays, {shadow_status_.data(), shadow_.rays.size()}, RayClass::shadow);
-  for (std::size_t i = 0; i < shadow_.paths.size(); ++i) {
+  rays_[shadow_ray] += shadow_.size;
+  shadow_status_.resize(std::max(shadow_status_.size(), shadow_.size));
+  gate_.any({shadow_.rays.data(), shadow_.size}, {shadow_status_.data(), shadow_.size}, RayClass::shadow);
+  for (std::size_t i = 0; i < shadow_.size; ++i) {
     if (!(shadow_status_[i] & status_hit)) radiance_[shadow_.paths[i].sample] += shadow_.paths[i].weight;
     invalid_ += (shadow_status_[i] & status_invalid) != 0;
   }

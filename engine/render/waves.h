@@ -32,8 +32,8 @@ class Waves {
  public:
   Waves(const Picture& picture, TracerGate& gate);
 
-  /// The rays to start from, for the caller to fill; directions must have unit length.
-  std::vector<Ray>& primary() { return levels_.front().rays; }
+  /// Room for `count` rays to start from, for the caller to fill; directions must have unit length.
+  std::span<Ray> primary(std::size_t count);
   /// The linear colour that each of them sees. Valid until the next call.
   std::span<const glm::vec3> radiance();
 
@@ -47,13 +47,18 @@ class Waves {
     glm::vec3 weight;
     std::uint32_t sample;
   };
-  /// Rays of one depth, in the order of their samples.
-  struct Level {
+  /// Rays that wait to be traced, in the order of their samples.
+  struct Queue {
     std::vector<Ray> rays;
     std::vector<Path> paths;
+    std::size_t size = 0;  ///< the arrays only grow: what they held before is overwritten in place
 
-    void clear() { rays.clear(), paths.clear(); }
-    void add(const Ray& ray, const Path& path) { rays.push_back(ray), paths.push_back(path); }
+    void reserve(std::size_t more);
+    void add(const Departure& from, const glm::dvec3& direction, double tmax, const glm::vec3& weight,
+             std::uint32_t sample) {
+      from.start(rays[size], direction, tmax);
+      paths[size++] = {weight, sample};
+    }
     /// The end of the wave that starts at `first`: whole samples, as many as fit `batch` rays, at least one.
     std::size_t wave_end(std::size_t first, std::size_t batch) const;
   };
@@ -67,16 +72,16 @@ class Waves {
   };
 
   void trace(std::size_t depth, std::size_t first, std::size_t last);
-  void shade(const Ray& ray, const Hit& hit, const Path& path, Level* next);
-  void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Level& next);
-  void spawn(Level& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
+  void shade(const Ray& ray, const Hit& hit, const Path& path, Queue* next);
+  void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next);
+  void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
              std::uint64_t& count);
   void shine(const Light& light);
 
   const Picture& picture_;
   TracerGate& gate_;
-  std::vector<Level> levels_;  ///< by depth; 0 holds the primary rays
-  Level shadow_;
+  std::vector<Queue> levels_;  ///< by depth; 0 holds the primary rays
+  Queue shadow_;
   std::vector<Hit> hits_;
   std::vector<std::uint32_t> shadow_status_;
   std::vector<LitPoint> points_;
