@@ -15,7 +15,7 @@ namespace rayengine {
 namespace {
 
 constexpr int runs = 9;                    // timed, after one to warm up
-constexpr double longest_run = 2;          // seconds; slower ones get fewer rays
+constexpr double longest_run = 4;          // seconds; slower ones get fewer rays
 constexpr std::size_t probe_rays = 4096;   // that tell how slow one is
 constexpr std::size_t sample_rays = 2048;  // checked against the oracle
 
@@ -96,15 +96,22 @@ double time(Contestant& contestant, const RaySet& set, std::span<const Ray> rays
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The best of a few short runs: the first ones pay for memory and caches.
+double probe_seconds(Contestant& contestant, const RaySet& set, std::size_t probe) {
+  double seconds = infinity;
+  for (int run = 0; run < 3; ++run)
+    seconds = std::min(seconds, time(contestant, set, std::span(set.rays).first(probe)));
+  return std::max(seconds, 1e-9);
+}
+
 /// Warms up, and cuts the rays of slow contestants so that a run stays short.
 void warm_up(Entry& entry, const RaySet& set) {
   const std::size_t probe = std::min(probe_rays, set.rays.size());
-  const double seconds = time(*entry.contestant, set, std::span(set.rays).first(probe));
-  const double affordable = longest_run * static_cast<double>(probe) / std::max(seconds, 1e-9);
-  entry.rays = affordable < static_cast<double>(set.rays.size()) ? std::max(probe, static_cast<std::size_t>(affordable))
-                                                                 : set.rays.size();
+  const double affordable = longest_run * static_cast<double>(probe) / probe_seconds(*entry.contestant, set, probe);
+  const bool slow = affordable < static_cast<double>(set.rays.size());
+  entry.rays = slow ? std::max(probe, static_cast<std::size_t>(affordable)) : set.rays.size();
   entry.rates.clear();
-  if (entry.rays > probe) time(*entry.contestant, set, std::span(set.rays).first(entry.rays));
+  time(*entry.contestant, set, std::span(set.rays).first(entry.rays));
 }
 
 void time_run(Entry& entry, const RaySet& set) {
