@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "gpu/kernel_program.h"
+#include "gpu/probe.h"
 
 namespace rayengine {
 namespace {
@@ -42,6 +43,7 @@ ObjectsEngine::ObjectsEngine(std::shared_ptr<const Geometry> geometry, Precision
       list_(list_of(*scene_.geometry)),
       textures_(upload(scene_, list_, context_.info())),
       passes_(passes()) {
+  require_usable(context_);
   for (const KernelType type : textures_.types) programs_.push_back(make_program(type, precision));
   batch_.emplace(side, precision == Precision::half);
   context_.check_errors("the upload of the scene");

@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "accel/tracer.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
 
@@ -105,10 +106,11 @@ double largest_ulps(const std::vector<Operands>& operands, const Answers& answer
   return largest;
 }
 
+float twice_rounded(const Operands& o) { return o.a * o.b + o.c; }
+
 ArithmeticProbe probe_stage(bool compute) {
   Questioner stage(compute);
   const std::vector<Operands> usual = ordinary_operands(), tiny = tiny_operands();
-  const auto twice_rounded = [](const Operands& o) { return o.a * o.b + o.c; };
   const auto exact_product = [](const Operands& o) { return static_cast<double>(o.a) * o.b; };
   ArithmeticProbe p;
   p.stage = compute ? "compute" : "fragment";
@@ -188,23 +190,36 @@ GpuProbe probe(Context& context) {
   return result;
 }
 
-std::vector<std::string> describe(const GpuProbe& probe) {
+void require_usable(Context& context) {
+  GpuProbe asked;
+  const std::vector<Operands> usual = ordinary_operands();
+  ArithmeticProbe& fragment = asked.stages.emplace_back();
+  fragment.stage = "fragment";
+  fragment.precise_holds = all(usual, Questioner(false).ask("precise_product_sum", usual), twice_rounded);
+  probe_depth(asked);
+  context.check_errors("the arithmetic probe");
+  std::string reasons;
+  for (const std::string& refusal : asked.refusals()) reasons += (reasons.empty() ? "" : "; ") + refusal;
+  if (!reasons.empty())
+    throw Error("the GPU (" + context.info().renderer + ") cannot be used: " + reasons + "; use --tracer embree");
+}
+
+std::vector<std::pair<std::string, std::string>> describe(const GpuProbe& probe) {
   const auto yes = [](bool b) { return b ? "yes" : "no"; };
-  std::vector<std::string> lines;
+  std::vector<std::pair<std::string, std::string>> facts;
   for (const ArithmeticProbe& s : probe.stages) {
     char line[240];
-    std::snprintf(
-        line, sizeof line,
-        "%s: fma fused %s, contracts %s, precise holds %s, TwoSum exact %s, Dekker exact %s, denormals kept %s, "
-        "division %.2f ulp, sqrt %.2f ulp",
-        s.stage.c_str(), yes(s.fma_fused), yes(s.contracts), yes(s.precise_holds), yes(s.two_sum_exact),
-        yes(s.dekker_exact), yes(s.denormals_kept), s.division_ulps, s.sqrt_ulps);
-    lines.emplace_back(line);
+    std::snprintf(line, sizeof line,
+                  "fma fused %s, contracts %s, precise holds %s, TwoSum exact %s, Dekker exact %s, denormals kept %s, "
+                  "division %.2f ulp, sqrt %.2f ulp",
+                  yes(s.fma_fused), yes(s.contracts), yes(s.precise_holds), yes(s.two_sum_exact), yes(s.dekker_exact),
+                  yes(s.denormals_kept), s.division_ulps, s.sqrt_ulps);
+    facts.emplace_back(s.stage, line);
   }
-  lines.push_back(std::string("early depth test: ") + yes(probe.early_depth_test) +
-                  ", with query: " + yes(probe.query_counts));
-  for (const std::string& refusal : probe.refusals()) lines.push_back("not used for tracing: " + refusal);
-  return lines;
+  facts.emplace_back("early_depth_test",
+                     std::string(yes(probe.early_depth_test)) + ", with query " + yes(probe.query_counts));
+  for (const std::string& refusal : probe.refusals()) facts.emplace_back("refused", refusal);
+  return facts;
 }
 
 }  // namespace rayengine

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rayengine {
@@ -32,7 +33,10 @@ struct GpuProbe {
 /// Runs the probe on the current context.
 GpuProbe probe(Context& context);
 
-/// Lines for `info`, one per fact.
-std::vector<std::string> describe(const GpuProbe& probe);
+/// Asks only for what tracing rests on. Throws Error, with the refusals, when the device cannot be trusted with it.
+void require_usable(Context& context);
+
+/// What `info` says: a subject ("fragment", "compute", "early_depth_test", "refused") and the facts about it.
+std::vector<std::pair<std::string, std::string>> describe(const GpuProbe& probe);
 
 }  // namespace rayengine

@@ -10,6 +10,7 @@
 #include <deque>
 
 #include "accel/rounding.h"
+#include "gpu/probe.h"
 
 namespace rayengine {
 namespace {
@@ -35,6 +36,7 @@ StreamEngine::StreamEngine(std::shared_ptr<const Geometry> geometry, const Strea
       scene_(flatten(std::move(geometry))),
       treelets_(build_treelets(treelet_primitives(*scene_.geometry), treelet_size(options, context_.info()))),
       textures_(upload(scene_, treelets_, context_.info())) {
+  require_usable(context_);
   kernels(StreamQuery::closest);
   context_.check_errors("the upload of the scene");
 }

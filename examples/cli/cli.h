@@ -32,6 +32,7 @@ enum class Verbosity { quiet, normal, verbose };
 /// What every subcommand understands.
 struct Common {
   int threads = 0;  ///< 0: as many as the machine has
+  int gpu = -1;     ///< an EGL device by its number; the best when negative
   Verbosity verbosity = Verbosity::normal;
 
   bool quiet() const { return verbosity == Verbosity::quiet; }

@@ -142,7 +142,7 @@ int run(const Options& o) {
   const ThreadLimit limit(o.common.threads);
   const LoadedScene loaded = load(o.scene, o.common);
   const std::vector<Ray> rays = rays_for(o, loaded.scene.camera);
-  const TracerOptions options{o.precision, o.common.threads};
+  const TracerOptions options{o.precision, o.common.threads, o.common.gpu};
   std::vector<std::unique_ptr<Tracer>> tracers;
   for (const std::string& name : tracer_names) tracers.push_back(make_tracer(name, loaded.scene.geometry, options));
   Tracer& oracle = *tracers[oracle_index(tracer_names)];

@@ -9,6 +9,7 @@
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
 #include "examples/cli/report.h"
+#include "gpu/gpu_report.h"
 
 namespace rayengine::cli {
 namespace {
@@ -36,6 +37,34 @@ Json describe(const TracerInfo& info) {
 Json tracers() {
   Json all = Json::array();
   for (const TracerInfo& info : tracer_list()) all.push_back(describe(info));
+  return all;
+}
+
+Json gpu(const GpuReport& report) {
+  const GpuInfo& g = report.info;
+  Json facts = Json::object();
+  for (const auto& [subject, text] : describe(report.probe)) facts[subject] = text;
+  return {{"name", g.renderer},
+          {"vendor", g.vendor},
+          {"opengl", g.version},
+          {"reached_by", g.platform},
+          {"largest_texture", g.texture_size},
+          {"largest_buffer_texels", g.buffer_texels},
+          {"largest_storage_bytes", g.storage_bytes},
+          {"largest_work_group", g.invocations},
+          {"compile_s", report.compile_seconds},
+          {"probe", facts}};
+}
+
+/// All EGL devices by their numbers, and what is known of the one that would be used.
+Json gpus(int chosen) {
+  Json all = Json::object();
+  for (const GpuInfo& g : gpu_devices()) all[g.platform] = g.renderer.empty() ? g.version : g.renderer;
+  try {
+    all["chosen"] = gpu(report_on_gpu(chosen));
+  } catch (const Error& error) {
+    all["chosen"] = {{"refused", error.what()}};
+  }
   return all;
 }
 
@@ -134,12 +163,13 @@ int run(const Options& o) {
   const ThreadLimit limit(o.common.threads);
   Json info = {{"device", device(thread_count(o.common.threads))}};
   if (o.scene.empty())
-    info["tracers"] = tracers();
+    info["gpu"] = gpus(o.common.gpu), info["tracers"] = tracers();
   else
     info["scene"] = describe(o.scene, load(o.scene, o.common));
   if (!o.json.empty()) write_json(o.json, info);
   if (o.scene.empty()) {
     print(info["device"]);
+    print(Json{{"gpu", info["gpu"]}});
     print_tracers(info["tracers"]);
   } else {
     print(info["scene"]);

@@ -56,6 +56,7 @@ CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::stri
   sub->option_defaults()->always_capture_default();
   sub->footer("Examples:\n" + examples);
   add_count(sub, "--threads", common.threads, {0, 1024}, "Threads to work with; 0: as many as the machine has");
+  add_count(sub, "--gpu", common.gpu, {-1, 255}, "GPU for tracers that run on one, as numbered by info; -1: the best");
   sub->add_flag_callback(
       "-q,--quiet", [&] { common.verbosity = Verbosity::quiet; }, "Say nothing on stderr but errors");
   sub->add_flag_callback(

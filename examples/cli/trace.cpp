@@ -131,7 +131,7 @@ int run(const Options& o) {
   const std::vector<Ray> rays = read_rays(o.rays);
   const LoadedScene loaded = load(o.scene, o.common);
   const Geometry& geometry = *loaded.scene.geometry;
-  const auto tracer = make_tracer(o.tracer, loaded.scene.geometry, {o.precision, o.common.threads});
+  const auto tracer = make_tracer(o.tracer, loaded.scene.geometry, {o.precision, o.common.threads, o.common.gpu});
   say_rounding(o, geometry, *tracer);
   const auto start = std::chrono::steady_clock::now();
   HitLists lists = ask(o, *tracer, rays);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "gpu/context.h"
+#include "gpu/probe.h"
+
+namespace rayengine {
+
+/// What `info` says of a device: who it is, what its arithmetic does, and what its shaders cost.
+struct GpuReport {
+  GpuInfo info;
+  GpuProbe probe;
+  double compile_seconds = 0;  ///< for the intersection shaders of all types of primitives
+};
+
+/// Opens the device (by its number; the best when negative), probes it and compiles. Throws Error when it cannot be
+/// used.
+GpuReport report_on_gpu(int device = -1);
+
+}  // namespace rayengine
