@@ -35,7 +35,8 @@ std::uint64_t count_duplicates(std::span<const glm::uvec3> triangles) {
   corners.reserve(triangles.size());
   for (const glm::uvec3& t : triangles) corners.push_back(sorted(t));
   std::ranges::sort(corners);
-  return static_cast<std::uint64_t>(std::ranges::unique(corners).size());
+  const auto last = std::unique(corners.begin(), corners.end());  // std::ranges::unique is beyond clang 14
+  return static_cast<std::uint64_t>(corners.end() - last);
 }
 
 bool has_area(std::span<const glm::dvec3> p, const glm::uvec3& t) {
