@@ -115,7 +115,7 @@ class Judge {
       const std::vector<Hit> answers = ask_around(some, part);
       const std::size_t count = answers.size() / some.size();
       for (std::size_t k = 0; k < some.size(); ++k)
-        if (explained(some[k], std::span(answers).subspan(k * count, count), geometry_, oracle_))
+        if (explained(some[k], part, std::span(answers).subspan(k * count, count), geometry_, oracle_))
           result_.ambiguous += !same_ids(some[k].hit, some[k].exact);
         else
           kept.push_back(some[k]);

@@ -77,10 +77,16 @@ bool triangle_explained(const Doubt& doubt, const Geometry& geometry, const Prim
          std::abs(plane.t - doubt.hit.t) <= in_t(doubt.bound, doubt.ray, plane) + plane.error;
 }
 
-bool quadric_explained(const Doubt& doubt, std::span<const Hit> answers, const Geometry& geometry, Tracer& oracle) {
-  const auto same = [&](const Hit& a) { return same_surface(geometry, a, doubt.hit); };
-  return std::any_of(answers.begin(), answers.end(), same) ||
-         std::ranges::any_of(oracle.all({&doubt.ray, 1}).hits, same);
+/// Whether neighbours meet the quadric near the stated t, be it behind another surface at nearly the same place.
+bool quadric_explained(const Doubt& doubt, double part, const Geometry& geometry, Tracer& oracle) {
+  double low = infinity, high = -infinity;
+  for (const Hit& a : oracle.all(neighbours(doubt, part)).hits) {
+    if (!same_surface(geometry, a, doubt.hit)) continue;
+    const double slack = in_t(doubt.bound, doubt.ray, a) + a.error;
+    low = std::min(low, a.t - slack);
+    high = std::max(high, a.t + slack);
+  }
+  return low <= doubt.hit.t && doubt.hit.t <= high;
 }
 
 /// Whether the oracle sees something nearer along the ray and along all of its neighbours.
@@ -114,14 +120,15 @@ std::vector<Ray> neighbours(const Doubt& doubt, double part) {
   return rays;
 }
 
-bool explained(const Doubt& doubt, std::span<const Hit> answers, const Geometry& geometry, Tracer& oracle) {
+bool explained(const Doubt& doubt, double part, std::span<const Hit> answers, const Geometry& geometry,
+               Tracer& oracle) {
   const Hit &hit = doubt.hit, &exact = doubt.exact;
   if (!hit.hit()) return std::any_of(answers.begin(), answers.end(), [](const Hit& a) { return !a.hit(); });
   if (hit.object == exact.object && hit.primitive == exact.primitive) return t_explained(doubt, answers);
   if (hidden(doubt, answers)) return false;
   const PrimitiveRef ref = resolve(geometry, hit.object, hit.primitive);
   return ref.is_triangle() ? triangle_explained(doubt, geometry, ref)
-                           : quadric_explained(doubt, answers, geometry, oracle);
+                           : quadric_explained(doubt, part, geometry, oracle);
 }
 
 }  // namespace rayengine

@@ -23,10 +23,11 @@ double in_t(double bound, const Ray& ray, const Hit& hit);
 /// directions by this part of the bound, and its interval moved by the bound. Always the same number of rays.
 std::vector<Ray> neighbours(const Doubt& doubt, double part);
 
-/// Whether rounding within the bound can have led to the tracer's answer, given the oracle's answers to neighbours.
+/// Whether rounding within the bound can have led to the tracer's answer, given the oracle's answers to neighbours at
+/// `part` of the bound.
 /// A t must lie among theirs. A miss needs a neighbour that misses. A hit needs a surface that comes within the bound
 /// of the ray, near the stated t, and not hidden from every neighbour: so rays that slip through a closed mesh and then
 /// hit its far side are not excused, nor are ids of another triangle in the same plane.
-bool explained(const Doubt& doubt, std::span<const Hit> answers, const Geometry& geometry, Tracer& oracle);
+bool explained(const Doubt& doubt, double part, std::span<const Hit> answers, const Geometry& geometry, Tracer& oracle);
 
 }  // namespace rayengine
