@@ -7,7 +7,8 @@ nm=$1
 shift
 (($# > 0)) || { echo "no object files built for AVX"; exit 1; }
 for object in "$@"; do
-  if "$nm" -C --defined-only "$object" | grep -E ' [WVu] '; then
+  symbols=$("$nm" -C --defined-only "$object")
+  if grep -E ' [WVu] ' <<<"$symbols"; then
     echo "$object: shares the above with files built for any x86-64; inline it, or make it static"
     exit 1
   fi
