@@ -36,3 +36,4 @@ install(FILES ${PROJECT_BINARY_DIR}/rayengine.pc DESTINATION ${pkgconfig_folder}
 if(RAYENGINE_TOOLS)
   install(TARGETS rayengine_cli)
 endif()
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/rayengine)

@@ -31,6 +31,6 @@ $compiler -std=c++20 $flags -o "$folder/embed" "$source/examples/embed/main.cpp"
 check "$folder/embed"
 
 if [[ -x $prefix/bin/rayengine ]]; then
-  echo "the command"
-  "$prefix/bin/rayengine" --help >/dev/null
+  echo "the command, on the sample scene that came along"
+  (cd "$folder" && "$prefix/bin/rayengine" render --size 16x16 && test -s sphereflake.png)
 fi
