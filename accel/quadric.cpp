@@ -80,20 +80,20 @@ std::optional<QuadricType> parse_quadric_type(std::string_view name) {
   return static_cast<QuadricType>(found - type_names.begin());
 }
 
-QuadricMatrix unit_matrix(QuadricType type) {
-  switch (type) {  //                          A  B  C  D  E  F  G  H   I     J
-    case QuadricType::sphere: return          {1, 0, 0, 0, 1, 0, 0, 1, 0, -1};
-    case QuadricType::cylinder: return        {1, 0, 0, 0, 1, 0, 0, 0, 0, -1};
-    case QuadricType::cone: return            {1, 0, 0, 0, 1, 0, 0, -1, 0, 0};
-    case QuadricType::paraboloid: return      {1, 0, 0, 0, 1, 0, 0, 0, -0.5, 0};
-    case QuadricType::hyperboloid1: return    {1, 0, 0, 0, 1, 0, 0, -1, 0, -1};
-    case QuadricType::hyperboloid2: return    {1, 0, 0, 0, 1, 0, 0, -1, 0, 1};  // signed so that the inside is negative
-    case QuadricType::saddle: return          {1, 0, 0, 0, -1, 0, 0, 0, -0.5, 0};
-    case QuadricType::plane:
-    case QuadricType::disk: return            {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0};
-    case QuadricType::general: break;
-  }
-  return {};
+const QuadricMatrix& unit_matrix(QuadricType type) {
+  static constexpr std::array<QuadricMatrix, quadric_type_count> matrices{{
+      {1, 0, 0, 0, 1, 0, 0, 1, 0, -1},     // sphere
+      {1, 0, 0, 0, 1, 0, 0, 0, 0, -1},     // cylinder
+      {1, 0, 0, 0, 1, 0, 0, -1, 0, 0},     // cone
+      {1, 0, 0, 0, 1, 0, 0, 0, -0.5, 0},   // paraboloid
+      {1, 0, 0, 0, 1, 0, 0, -1, 0, -1},    // hyperboloid1
+      {1, 0, 0, 0, 1, 0, 0, -1, 0, 1},     // hyperboloid2, signed so that the inside is negative
+      {1, 0, 0, 0, -1, 0, 0, 0, -0.5, 0},  // saddle
+      {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0},    // plane
+      {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0},    // disk
+      {},                                  // general
+  }};
+  return matrices[static_cast<std::size_t>(type)];
 }
 
 Box bounds(const Quadric& q, const GeneralForm* form) {

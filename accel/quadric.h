@@ -32,7 +32,7 @@ std::optional<QuadricType> parse_quadric_type(std::string_view name);
 using QuadricMatrix = std::array<double, 10>;
 
 /// The matrix of a unit primitive. `general` has none and gives zeros.
-QuadricMatrix unit_matrix(QuadricType type);
+const QuadricMatrix& unit_matrix(QuadricType type);
 
 /// What a caller says of a quadric in its object space; what is left out takes the type's default.
 struct QuadricShape {

@@ -26,7 +26,9 @@ double dot_abs(const glm::dvec3& a, const glm::dvec3& b) {
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 glm::dvec3 unit(const glm::dvec3& v) {
-  const double scale = largest(v);
+  const double square = glm::dot(v, v);
+  if (square > 1e-280 && square < 1e280) return v / std::sqrt(square);
+  const double scale = largest(v);  // squares would vanish or overflow
   if (!(scale > 0)) return {0, 0, 0};
   const glm::dvec3 w = v / scale;
   return w / glm::length(w);
@@ -95,14 +97,8 @@ Solution solve_triangle(const PrimitiveRef& ref, const Ray& world_ray, double t_
   return s;
 }
 
-const QuadricMatrix& matrix(const PrimitiveRef& ref) {
-  static const auto units = [] {
-    std::array<QuadricMatrix, quadric_type_count> all;
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = unit_matrix(static_cast<QuadricType>(i));
-    return all;
-  }();
-  const Quadric& q = ref.quadric();
-  return q.type == QuadricType::general ? ref.geometry->forms[q.form].matrix : units[static_cast<std::size_t>(q.type)];
+const QuadricMatrix& matrix(const Geometry& geometry, const Quadric& q) {
+  return q.type == QuadricType::general ? geometry.forms[q.form].matrix : unit_matrix(q.type);
 }
 
 glm::dvec3 linear_part(const QuadricMatrix& m, const glm::dvec3& v) {
@@ -154,7 +150,7 @@ glm::dvec3 to_world(const PrimitiveRef& ref, const glm::dvec3& normal) {
 /// + b|) while that slope is large against e; near a tangent, by the square root of e / |a|.
 Solution solve_side(const PrimitiveRef& ref, const Ray& ray, double t_guess) {
   const Approach k = approach(ref, ray);
-  const QuadricMatrix& m = matrix(ref);
+  const QuadricMatrix& m = matrix(*ref.geometry, ref.quadric());
   const QuadricMatrix m_abs = absolute(m);
   double a, b, c, near, far;
   kernels::general_coefficients(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9],
@@ -246,9 +242,7 @@ glm::dvec3 quadric_normal(const Geometry& geometry, const Quadric& quadric, cons
   glm::dvec3 normal(0, 0, part == 1 ? -1 : 1);
   if (part == 0) {
     const glm::dvec3 local = quadric.to_object.point(instance ? instance->to_group.point(point) : point);
-    const QuadricMatrix m =
-        quadric.type == QuadricType::general ? geometry.forms[quadric.form].matrix : unit_matrix(quadric.type);
-    normal = gradient(m, local);
+    normal = gradient(matrix(geometry, quadric), local);
   }
   const glm::dvec3 turned = quadric.to_object.normal_to_world(normal);
   return unit(instance ? instance->to_group.normal_to_world(turned) : turned);

@@ -14,9 +14,9 @@ namespace {
 constexpr double embree_range = 1.8e18;
 
 /// Rays start within near_extents of the scene (see RayLoader) and are rounded to float there: their origins move by
-/// near_extents 2^-24 of the extent, and on the way of at most some 10 extents their rounded directions lead them
+/// near_extents 2^-24 of the extent, and on the way of at most some 20 extents their rounded directions lead them
 /// astray by 10 2^-24 more. Boxes padded by this hold what the exact rays hit.
-constexpr double padding_per_extent = 0x1p-20;
+constexpr double padding_per_extent = 0x1p-19;
 
 /// Infinite boxes become the largest that Embree takes.
 float clamped(float a) { return std::clamp(a, -static_cast<float>(embree_range), static_cast<float>(embree_range)); }
@@ -156,23 +156,23 @@ void EmbreeScene::attach_triangles(Level& level) {
 
 void EmbreeScene::attach_quadrics(Level& level, double padding) {
   const QuadricCallbacks& callbacks = quadric_callbacks(best_isa(), precision_);
-  std::vector<std::vector<std::uint32_t>> by_type(quadric_type_count);
+  std::vector<std::vector<std::uint32_t>> by_kind(quadric_kind_count);
   for (std::size_t i = 0; i < level.geometry->quadrics.size(); ++i)
-    by_type[static_cast<std::size_t>(level.geometry->quadrics[i].type)].push_back(static_cast<std::uint32_t>(i));
+    by_kind[static_cast<std::size_t>(kind_of(level.geometry->quadrics[i]))].push_back(static_cast<std::uint32_t>(i));
   level.first_bucket = level.triangles_id == RTC_INVALID_GEOMETRY_ID
                            ? static_cast<unsigned>(&level == &top_ ? geometry_->instances.size() : 0)
                            : level.triangles_id + 1;
-  for (std::size_t type = 0; type < by_type.size(); ++type) {
-    if (by_type[type].empty()) continue;
-    level.buckets.push_back(std::make_unique<QuadricBucket>(
-        QuadricBucket{level.geometry, static_cast<QuadricType>(type), std::move(by_type[type]), float_above(padding)}));
+  for (std::size_t kind = 0; kind < by_kind.size(); ++kind) {
+    if (by_kind[kind].empty()) continue;
+    level.buckets.push_back(
+        std::make_unique<QuadricBucket>(QuadricBucket{level.geometry, std::move(by_kind[kind]), float_above(padding)}));
     QuadricBucket& bucket = *level.buckets.back();
     RTCGeometry user = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(bucket.quadrics.size()));
     rtcSetGeometryUserData(user, &bucket);
     rtcSetGeometryBoundsFunction(user, quadric_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(user, callbacks.intersect[type]);
-    rtcSetGeometryOccludedFunction(user, callbacks.occluded[type]);
+    rtcSetGeometryIntersectFunction(user, callbacks.intersect[kind]);
+    rtcSetGeometryOccludedFunction(user, callbacks.occluded[kind]);
     attach(level.scene, user);
   }
 }

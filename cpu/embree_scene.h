@@ -13,7 +13,7 @@ namespace rayengine {
 class EmbreeScene {
  public:
   /// Origins further out than so many times the scene's extent are moved before they are rounded to float.
-  static constexpr double near_extents = 4;
+  static constexpr double near_extents = 8;
 
   /// Throws Error when Embree fails, or when the geometry's finite parts lie beyond the range of its single precision.
   EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision);

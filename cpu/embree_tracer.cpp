@@ -4,6 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
+#include <glm/geometric.hpp>
+#include <tuple>
 #include <type_traits>
 
 #include "accel/surface.h"
@@ -15,23 +18,33 @@ namespace {
 
 constexpr std::size_t grain = 1024;  // rays a task; batches up to this run on the calling thread
 
-/// Where Embree's answer for one ray is found in a packet of `lanes`.
+/// Embree's answer for one ray.
 struct Answer {
   float t, u, v;
   glm::vec3 normal;  // of triangles; not unit
   unsigned geom, prim, inst;
 };
 
-template <class RayHits>
-Answer answer(RayHits& packet, int lanes, int i) {
-  auto* rays = reinterpret_cast<RTCRayHitN*>(&packet);
-  RTCRayN* ray = RTCRayHitN_RayN(rays, static_cast<unsigned>(lanes));
-  RTCHitN* hit = RTCRayHitN_HitN(rays, static_cast<unsigned>(lanes));
-  const auto n = static_cast<unsigned>(lanes), k = static_cast<unsigned>(i);
-  return {RTCRayN_tfar(ray, n, k),     RTCHitN_u(hit, n, k),
-          RTCHitN_v(hit, n, k),        {RTCHitN_Ng_x(hit, n, k), RTCHitN_Ng_y(hit, n, k), RTCHitN_Ng_z(hit, n, k)},
-          RTCHitN_geomID(hit, n, k),   RTCHitN_primID(hit, n, k),
-          RTCHitN_instID(hit, n, k, 0)};
+/// Reads lane `i` of Embree's packet, fields of `lanes` numbers.
+Answer answer(const float* soa, int lanes, int i) {
+  const auto field = [&](int f) { return soa[f * lanes + i]; };
+  const auto id = [&](int f) { return std::bit_cast<unsigned>(soa[f * lanes + i]); };
+  return {field(8), field(15), field(16), {field(12), field(13), field(14)}, id(18), id(17), id(19)};
+}
+
+void forget_hits(float* soa, int lanes) {
+  std::fill_n(soa + 18 * lanes, 2 * lanes, std::bit_cast<float>(RTC_INVALID_GEOMETRY_ID));
+}
+
+/// Normals of triangles to unit length, all lanes at once; lanes without a hit hold anything.
+void normalise(float* soa, int lanes) {
+  float *x = soa + 12 * lanes, *y = x + lanes, *z = y + lanes;
+  for (int i = 0; i < lanes; ++i) {
+    const float largest = std::max(std::max(std::abs(x[i]), std::abs(y[i])), std::abs(z[i]));
+    const float a = x[i] / largest, b = y[i] / largest, c = z[i] / largest;  // squares of small ones would vanish
+    const float length = std::sqrt((a * a + b * b) + c * c);
+    x[i] = a / length, y[i] = b / length, z[i] = c / length;
+  }
 }
 
 class EmbreeTracer final : public Tracer {
@@ -52,15 +65,17 @@ class EmbreeTracer final : public Tracer {
   HitLists all(std::span<const Ray> rays) override;
 
  private:
-  template <class EmbreeRays>
-  void begin(Packet<EmbreeRays>& packet, RayClass ray_class) const;
   template <class RayHits, int lanes>
   void closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const;
   template <class Rays, int lanes>
   void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const;
   std::vector<Hit> all(const Ray& ray) const;
-  Hit hit(const Ray& ray, const Answer& answer, double t) const;
-  void set_ids(Hit& hit, const Answer& answer, const EmbreeScene::Level& level, std::uint32_t object,
+  // These write to their last argument in place: copies of a hit cost as much as making it.
+  void triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const;
+  void quadric_hit(const Ray& ray, const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const;
+  void hit_of(const Ray& ray, const Answer& answer, const QuadricContext& context, int lane, Hit& hit) const;
+  /// Ids within `level` to those that the caller knows.
+  void set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& level, std::uint32_t object,
                std::uint32_t primitive) const;
 
   Precision precision_;
@@ -82,79 +97,72 @@ void for_ranges(std::size_t count, Work&& work) {
                     [&](const auto& range) { work(range.begin() * grain, std::min(range.end() * grain, count)); });
 }
 
-template <class EmbreeRays>
-void EmbreeTracer::begin(Packet<EmbreeRays>& packet, RayClass ray_class) const {
-  rtcInitIntersectContext(&packet.context.embree);
-  // Embree 3.13 can hang in its coherent occlusion test when the scene holds instances.
-  if (is_coherent(ray_class) && scene_.instances().empty())
-    packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  packet.context.instances = &scene_.instances();
-}
-
-void EmbreeTracer::set_ids(Hit& hit, const Answer& answer, const EmbreeScene::Level& level, std::uint32_t object,
+void EmbreeTracer::set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& level, std::uint32_t object,
                            std::uint32_t primitive) const {
-  if (answer.inst == RTC_INVALID_GEOMETRY_ID) {
-    hit.object = object, hit.primitive = primitive;
-    return;
-  }
-  const Instance& instance = scene_.instances()[answer.inst];
+  hit.object = object, hit.primitive = primitive;
+  if (inst == RTC_INVALID_GEOMETRY_ID) return;
+  const Instance& instance = scene_.instances()[inst];
   hit.object = instance.object;
-  hit.primitive = instance.first_primitive + level.geometry->objects[object].first_primitive + primitive;
+  hit.primitive += instance.first_primitive + level.geometry->objects[object].first_primitive;
 }
 
-Hit EmbreeTracer::hit(const Ray& ray, const Answer& answer, double t) const {
-  const EmbreeScene::Level& level = scene_.level(answer.inst);
+void EmbreeTracer::triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const {
   const Geometry& g = *level.geometry;
-  Hit result;
-  result.t = t;
-  result.status = status_hit;
-  if (answer.geom == level.triangles_id) {
-    result.u = answer.u, result.v = answer.v;
-    const std::uint32_t object = g.triangle_object[answer.prim];
-    set_ids(result, answer, level, object, answer.prim - g.objects[object].first);
-    glm::dvec3 normal(answer.normal);
-    if (answer.inst != RTC_INVALID_GEOMETRY_ID)
-      normal = scene_.instances()[answer.inst].to_group.normal_to_world(normal);
-    result.normal = glm::vec3(normal / std::sqrt((normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z));
-    return result;
-  }
+  const std::uint32_t object = g.triangle_object[answer.prim];
+  hit.t = t;
+  hit.error = 0;
+  hit.u = answer.u, hit.v = answer.v;
+  hit.normal = answer.normal;
+  hit.status = status_hit;
+  set_ids(hit, answer.inst, level, object, answer.prim - g.objects[object].first);
+  if (answer.inst == RTC_INVALID_GEOMETRY_ID) return;
+  const glm::dvec3 turned = scene_.instances()[answer.inst].to_group.normal_to_world(glm::dvec3(answer.normal));
+  hit.normal = glm::vec3(glm::normalize(turned));
+}
+
+void EmbreeTracer::quadric_hit(const Ray& ray, const Answer& answer, const EmbreeScene::Level& level, double t,
+                               Hit& hit) const {
+  const Geometry& g = *level.geometry;
   const QuadricBucket& bucket = *level.buckets[answer.geom - level.first_bucket];
   const Quadric& quadric = g.quadrics[bucket.quadrics[answer.prim]];
   const auto part = static_cast<std::uint32_t>(answer.u);
-  set_ids(result, answer, level, quadric.object, part);
   const Instance* instance = answer.inst == RTC_INVALID_GEOMETRY_ID ? nullptr : &scene_.instances()[answer.inst];
-  result.normal = glm::vec3(quadric_normal(g, quadric, instance, part, ray.at(t)));
-  return result;
+  hit.t = t;
+  hit.error = 0;
+  hit.u = hit.v = 0;
+  hit.normal = glm::vec3(quadric_normal(g, quadric, instance, part, ray.at(t)));
+  hit.status = status_hit;
+  set_ids(hit, answer.inst, level, quadric.object, part);
+}
+
+void EmbreeTracer::hit_of(const Ray& ray, const Answer& a, const QuadricContext& context, int lane, Hit& hit) const {
+  const EmbreeScene::Level& level = scene_.level(a.inst);
+  const double t = context.shift[lane] + static_cast<double>(a.t) * context.scale[lane];
+  if (a.geom == level.triangles_id) return triangle_hit(a, level, t, hit);
+  quadric_hit(ray, a, level, precision_ == Precision::fast ? t : context.nearest[lane], hit);
 }
 
 template <class RayHits, int lanes>
 void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const {
   Packet<RayHits> packet;
-  begin(packet, ray_class);
+  float* const soa = reinterpret_cast<float*>(&packet.rays);
+  loader_.begin(lanes, is_coherent(ray_class), packet);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = rays.subspan(first, std::min<std::size_t>(lanes, rays.size() - first));
-    const bool traced = loader_.load(now, lanes, packet);
-    auto* geom = &packet.rays.hit.geomID;
-    std::fill_n(reinterpret_cast<unsigned*>(geom), lanes, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(reinterpret_cast<unsigned*>(&packet.rays.hit.instID), lanes, RTC_INVALID_GEOMETRY_ID);
-    if (traced) {
+    forget_hits(soa, lanes);
+    if (loader_.load(now, lanes, packet)) {
       if constexpr (lanes == 16) rtcIntersect16(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
       if constexpr (lanes == 8) rtcIntersect8(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
       if constexpr (lanes == 1) rtcIntersect1(scene_.scene(), &packet.context.embree, &packet.rays);
+      normalise(soa, lanes);
     }
     for (int i = 0; i < static_cast<int>(now.size()); ++i) {
+      const Answer a = answer(soa, lanes, i);
       Hit& out = hits[first + static_cast<std::size_t>(i)];
-      const Answer a = answer(packet.rays, lanes, i);
-      if (a.geom == RTC_INVALID_GEOMETRY_ID || !packet.valid[i]) {
-        out = Hit{};
-        out.status = packet.status[i];
-        continue;
-      }
-      const bool triangle = a.geom == scene_.level(a.inst).triangles_id;
-      const double t = triangle || precision_ == Precision::fast
-                           ? packet.context.shift[i] + static_cast<double>(a.t) * packet.context.scale[i]
-                           : packet.context.nearest[i];
-      out = hit(now[static_cast<std::size_t>(i)], a, t);
+      if (a.geom == RTC_INVALID_GEOMETRY_ID)
+        out = Hit{.status = packet.status[i]};
+      else
+        hit_of(now[static_cast<std::size_t>(i)], a, packet.context, i, out);
     }
   }
 }
@@ -162,7 +170,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
 template <class Rays, int lanes>
 void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
   Packet<Rays> packet;
-  begin(packet, ray_class);
+  loader_.begin(lanes, is_coherent(ray_class), packet);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = rays.subspan(first, std::min<std::size_t>(lanes, rays.size() - first));
     if (loader_.load(now, lanes, packet)) {
@@ -214,7 +222,7 @@ void collect_triangle(const RTCFilterFunctionNArguments* args) {
 
 std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
   Packet<RTCRayHit> packet;
-  begin(packet, RayClass::bounce);
+  loader_.begin(1, false, packet);
   HitCollector collector;
   packet.context.collector = &collector;
   packet.context.embree.filter = collect_triangle;
@@ -223,11 +231,13 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
   std::vector<Hit> hits;
   for (const auto& e : collector.entries) {
     const EmbreeScene::Level& level = scene_.level(e.inst);
-    glm::vec3 normal(0);
-    if (e.geom == level.triangles_id) normal = glm::vec3(triangle_normal(*level.geometry, e.prim));
-    const bool single = precision_ == Precision::fast && e.geom != level.triangles_id;  // Embree's own t
-    const double t = single ? packet.context.shift[0] + e.t * packet.context.scale[0] : e.t;
-    hits.push_back(hit(ray, {0, e.u, e.v, normal, e.geom, e.prim, e.inst}, t));
+    Hit& hit = hits.emplace_back();
+    if (e.geom != level.triangles_id) {
+      quadric_hit(ray, {0, e.u, e.v, {}, e.geom, e.prim, e.inst}, level, e.t, hit);
+      continue;
+    }
+    const glm::vec3 normal(glm::normalize(triangle_normal(*level.geometry, e.prim)));
+    triangle_hit({0, e.u, e.v, normal, e.geom, e.prim, e.inst}, level, e.t, hit);
   }
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
     return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);

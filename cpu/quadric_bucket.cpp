@@ -1,6 +1,14 @@
 #include "cpu/quadric_bucket.h"
 
+#include "cpu/packet.h"
+
 namespace rayengine {
+
+int kind_of(const Quadric& q) {
+  const glm::dmat3& m = q.to_object.linear;
+  const bool ball = q.type == QuadricType::sphere && q.zmin <= -1 && q.zmax >= 1 && m == glm::dmat3(m[0][0]);
+  return ball ? ball_kind : static_cast<int>(q.type);
+}
 
 void collect_hit(HitCollector& collector, const HitCollector::Entry& entry) { collector.entries.push_back(entry); }
 
@@ -12,6 +20,11 @@ const QuadricCallbacks& quadric_callbacks(Isa isa, Precision precision) {
     case Isa::sse2: break;
   }
   return fast ? sse2::fast_callbacks : sse2::robust_callbacks;
+}
+
+LoadPacket packet_loader(Isa isa) {
+  if (isa == Isa::avx512) return avx512::load_packet;
+  return isa == Isa::avx2 ? avx2::load_packet : sse2::load_packet;
 }
 
 }  // namespace rayengine

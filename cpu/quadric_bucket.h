@@ -13,10 +13,17 @@ namespace rayengine {
 
 inline constexpr int packet_size = 16;
 
-/// The quadrics of one type of a geometry: one Embree user geometry, whose callbacks know the type.
+/// What callbacks are made for: every type, and apart from them whole spheres under one scale for all axes.
+inline constexpr int ball_kind = static_cast<int>(quadric_type_count);
+inline constexpr int quadric_kind_count = ball_kind + 1;
+constexpr QuadricType type_of(int kind) {
+  return kind == ball_kind ? QuadricType::sphere : static_cast<QuadricType>(kind);
+}
+int kind_of(const Quadric& quadric);
+
+/// The quadrics of one kind of a geometry: one Embree user geometry, whose callbacks know the kind.
 struct QuadricBucket {
   const Geometry* geometry = nullptr;
-  QuadricType type = QuadricType::sphere;
   std::vector<std::uint32_t> quadrics;  ///< Embree's primID to the index in Geometry::quadrics
   float padding = 0;                    ///< added to all sides of their boxes: see EmbreeScene
 };
@@ -50,10 +57,10 @@ struct alignas(64) QuadricContext {
   alignas(64) double scale[packet_size];    ///< 1 / rate
 };
 
-/// The callbacks of one instruction set, by type of quadric.
+/// The callbacks of one instruction set, by kind of quadric.
 struct QuadricCallbacks {
-  RTCIntersectFunctionN intersect[quadric_type_count];
-  RTCOccludedFunctionN occluded[quadric_type_count];
+  RTCIntersectFunctionN intersect[quadric_kind_count];
+  RTCOccludedFunctionN occluded[quadric_kind_count];
 };
 
 /// `fast` tests in single precision on Embree's rays; anything above in double on the rays of the context.

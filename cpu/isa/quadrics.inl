@@ -1,54 +1,25 @@
-// Embree's callbacks for quadrics, compiled once per instruction set: ISA names its namespace, ISA_BYTES the width of
-// its registers. Nothing here may instantiate functions that other translation units share, or the linker could put
-// this instruction set's code where another is expected: all is inlined or lives in the ISA's namespace.
+// Embree's callbacks for quadrics, compiled once per instruction set (see lanes.inl).
 
 #include <limits>
 
-#include "accel/kernels/kernels.h"
+#include "cpu/isa/lanes.inl"
 #include "cpu/quadric_bucket.h"
 
 namespace rayengine::ISA {
 namespace {
 
-#define INLINE [[gnu::always_inline]] inline
-
-template <class T>
-struct LanesOf {
-  typedef T type __attribute__((vector_size(ISA_BYTES)));
-};
-template <class T>
-using Lanes = typename LanesOf<T>::type;
-
 template <class REAL>
 using Vec3 = kernels::Vec3<REAL>;
 
-template <class REAL>
-inline constexpr int lane_count = kernels::is_lanes<REAL> ? ISA_BYTES / sizeof(typename kernels::Scalar<REAL>::type)
-                                                          : 1;
-
-/// The value in every lane; 0 - (-a) and not 0 + a, which would lose the sign of a zero.
-template <class REAL>
-INLINE REAL splat(double a) {
-  return REAL{} - static_cast<typename kernels::Scalar<REAL>::type>(-a);
-}
-
-template <class REAL>
-INLINE REAL load(const typename kernels::Scalar<REAL>::type* from) {
-  REAL result;
-  __builtin_memcpy(&result, from, sizeof result);
-  return result;
-}
-
-template <class REAL>
-INLINE bool none(kernels::Mask<REAL> mask) {
-  if constexpr (kernels::is_lanes<REAL>) {
-    bool any = false;
-    for (int i = 0; i < lane_count<REAL>; ++i) any |= mask[i] != 0;
-    return !any;
-  } else {
-    return !mask;
-  }
-}
+/// As many ints as there are lanes of floats (4 bytes) or doubles (8).
+template <int bytes>
+struct IntLanes {
+  typedef int type __attribute__((vector_size(ISA_BYTES)));
+};
+template <>
+struct IntLanes<8> {
+  typedef int type __attribute__((vector_size(ISA_BYTES / 2)));
+};
 
 /// A ray per lane with the interval that still counts. `object` is that of the nearest hit so far.
 template <class REAL>
@@ -77,11 +48,24 @@ INLINE Vec3<REAL> turned(const WorldToObject& map, const Vec3<REAL>& v) {
 }
 
 template <class REAL>
+INLINE Vec3<REAL> scaled(REAL k, const Vec3<REAL>& v) {
+  return {k * v.x, k * v.y, k * v.z};
+}
+
+template <class REAL>
 INLINE void to_object(const WorldToObject& map, Vec3<REAL>& o, Vec3<REAL>& d) {
   const Vec3<REAL> from{o.x - splat<REAL>(map.origin.x), o.y - splat<REAL>(map.origin.y),
                         o.z - splat<REAL>(map.origin.z)};
   o = turned(map, from);
   d = turned(map, d);
+}
+
+/// The same where the map is the same scale for all axes; the bits are the same too.
+template <class REAL>
+INLINE void to_unit_ball(const WorldToObject& map, Vec3<REAL>& o, Vec3<REAL>& d) {
+  const REAL k = splat<REAL>(column(map.linear, 0, 0));
+  o = scaled(k, {o.x - splat<REAL>(map.origin.x), o.y - splat<REAL>(map.origin.y), o.z - splat<REAL>(map.origin.z)});
+  d = scaled(k, d);
 }
 
 /// Coefficients of a unit primitive's form A x^2 + E y^2 + H z^2 + 2 I z + J.
@@ -160,20 +144,24 @@ struct Crossings {
   REAL near, far, lower_cap, upper_cap;
 };
 
-template <QuadricType type, class REAL>
+template <int kind, class REAL>
 INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, Vec3<REAL> o, Vec3<REAL> d) {
-  to_object(q.to_object, o, d);
+  constexpr QuadricType type = type_of(kind);
+  if constexpr (kind == ball_kind)
+    to_unit_ball(q.to_object, o, d);
+  else
+    to_object(q.to_object, o, d);
   Vec3<REAL> p;
   REAL s, near, far;
   kernels::approach(o, d, p, s);
   side_roots<type>(bucket, q, p, d, near, far);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
   Crossings<REAL> found{near, far, largest, largest};
-  if (type != QuadricType::sphere || q.zmin > -1 || q.zmax < 1) {
+  if (kind != ball_kind) {
     found.near = clipped<type>(bucket, q, near, p, d);
     found.far = clipped<type>(bucket, q, far, p, d);
   }
-  if (q.capped) {
+  if (kind != ball_kind && q.capped) {
     constexpr Form f = form<type>();
     const auto cap = [&](double at) {
       return kernels::cap(splat<REAL>(f.A), splat<REAL>(f.E), splat<REAL>(f.H), splat<REAL>(f.I), splat<REAL>(f.J),
@@ -187,14 +175,14 @@ INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, 
   return {s + found.near, s + found.far, s + found.lower_cap, s + found.upper_cap};
 }
 
-template <QuadricType type, class REAL>
+template <int kind, class REAL>
 INLINE Found<REAL> intersect(const QuadricBucket& bucket, const Quadric& q, const Rays<REAL>& rays) {
-  const Crossings<REAL> c = crossings<type>(bucket, q, rays.o, rays.d);
+  const Crossings<REAL> c = crossings<kind>(bucket, q, rays.o, rays.d);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
   Found<REAL> best{largest, REAL{}, {}};
   consider(c.near, 0, rays, best);
   consider(c.far, 0, rays, best);
-  if (q.capped) {
+  if (kind != ball_kind && q.capped) {
     consider(c.lower_cap, 1, rays, best);
     consider(c.upper_cap, 2, rays, best);
   }
@@ -231,7 +219,8 @@ INLINE REAL embree_end(const Call& call, int first) {
   const QuadricContext& c = *call.context;
   REAL end;
   if constexpr (kernels::is_lanes<REAL>) {
-    for (int i = 0; i < lane_count<REAL>; ++i) end[i] = static_cast<double>(tfar[i]);
+    typedef float Floats __attribute__((vector_size(ISA_BYTES / 2)));
+    end = __builtin_convertvector(load<Floats>(tfar), REAL);
   } else {
     end = static_cast<double>(*tfar);
   }
@@ -274,7 +263,8 @@ INLINE Rays<REAL> gather(const Call& call, int first) {
   else
     rays = gather_float<REAL>(call, first);
   if constexpr (kernels::is_lanes<REAL>) {
-    for (int i = 0; i < lane_count<REAL>; ++i) rays.active[i] = call.valid[first + i] ? -1 : 0;
+    using Ints = typename IntLanes<sizeof(typename kernels::Scalar<REAL>::type)>::type;
+    rays.active = __builtin_convertvector(load<Ints>(call.valid + first), kernels::Mask<REAL>);
   } else {
     rays.active = call.valid[first] != 0;
   }
@@ -300,36 +290,42 @@ INLINE void record(const Call& call, unsigned ray, double t, float part, bool ex
   RTCHitN_u(call.hit, call.N, ray) = part;
 }
 
-template <QuadricType type, class REAL>
+template <int kind, class REAL>
 INLINE void closest_lanes(const Call& call, int first) {
   const Rays<REAL> rays = gather<REAL>(call, first);
-  if (none<REAL>(rays.active)) return;
-  const Found<REAL> found = intersect<type>(*call.bucket, *call.quadric, rays);
-  if (none<REAL>(found.hit)) return;
+  if (none(rays.active)) return;
+  const Found<REAL> found = intersect<kind>(*call.bucket, *call.quadric, rays);
+  if (none(found.hit)) return;
   constexpr bool exact = sizeof(typename kernels::Scalar<REAL>::type) == sizeof(double);
   for (int i = 0; i < lane_count<REAL>; ++i)
     if (lane(found.hit, i)) record(call, first + i, lane(found.t, i), static_cast<float>(lane(found.part, i)), exact);
 }
 
-template <QuadricType type, class REAL>
+template <int kind, class REAL>
 INLINE void any_lanes(const Call& call, int first) {
   const Rays<REAL> rays = gather<REAL>(call, first);
-  if (none<REAL>(rays.active)) return;
-  const Found<REAL> found = intersect<type>(*call.bucket, *call.quadric, rays);
+  if (none(rays.active)) return;
+  const Found<REAL> found = intersect<kind>(*call.bucket, *call.quadric, rays);
   for (int i = 0; i < lane_count<REAL>; ++i)
     if (lane(found.hit, i)) RTCRayN_tfar(call.ray, call.N, first + i) = -std::numeric_limits<float>::infinity();
 }
 
+/// Double counts t as we do; single precision as Embree does.
+INLINE double our_t(const Call&, int, double t) { return t; }
+INLINE double our_t(const Call& call, int ray, float t) {
+  return call.context->shift[ray] + static_cast<double>(t) * call.context->scale[ray];
+}
+
 /// All hits: every crossing within the interval goes to the collector, in double or float as the precision has it.
-template <QuadricType type, class REAL>
+template <int kind, class REAL>
 INLINE void collect(const Call& call) {
   const Rays<REAL> rays = gather<REAL>(call, 0);
-  const Crossings<REAL> c = crossings<type>(*call.bucket, *call.quadric, rays.o, rays.d);
-  const double t[4] = {c.near, c.far, c.lower_cap, c.upper_cap};
+  const Crossings<REAL> c = crossings<kind>(*call.bucket, *call.quadric, rays.o, rays.d);
+  const REAL t[4] = {c.near, c.far, c.lower_cap, c.upper_cap};
   for (int i = 0; i < 4; ++i)
     if (t[i] > rays.tmin && t[i] < rays.nearest && t[i] < std::numeric_limits<REAL>::max())
-      collect_hit(*call.context->collector,
-                  {t[i], call.geom, call.prim, call.inst, i < 2 ? 0.f : static_cast<float>(i - 1), 0.f});
+      collect_hit(*call.context->collector, {our_t(call, 0, t[i]), call.geom, call.prim, call.inst,
+                                             i < 2 ? 0.f : static_cast<float>(i - 1), 0.f});
 }
 
 template <class Arguments>
@@ -359,32 +355,32 @@ INLINE void dispatch(const Call& call, Wide&& wide, Narrow&& narrow) {
       if (call.valid[i]) narrow(i);
 }
 
-template <QuadricType type, class SCALAR>
+template <int kind, class SCALAR>
 void intersect_callback(const RTCIntersectFunctionNArguments* args) {
   const Call call = begin(*args, RTCRayHitN_RayN(args->rayhit, args->N), RTCRayHitN_HitN(args->rayhit, args->N));
-  if (call.context->collector) return collect<type, SCALAR>(call);
+  if (call.context->collector) return collect<kind, SCALAR>(call);
   dispatch<SCALAR>(
-      call, [&](int first) { closest_lanes<type, Lanes<SCALAR>>(call, first); },
-      [&](int i) { closest_lanes<type, SCALAR>(call, i); });
+      call, [&](int first) { closest_lanes<kind, Lanes<SCALAR>>(call, first); },
+      [&](int i) { closest_lanes<kind, SCALAR>(call, i); });
 }
 
-template <QuadricType type, class SCALAR>
+template <int kind, class SCALAR>
 void occluded_callback(const RTCOccludedFunctionNArguments* args) {
   const Call call = begin(*args, args->ray, nullptr);
   dispatch<SCALAR>(
-      call, [&](int first) { any_lanes<type, Lanes<SCALAR>>(call, first); },
-      [&](int i) { any_lanes<type, SCALAR>(call, i); });
+      call, [&](int first) { any_lanes<kind, Lanes<SCALAR>>(call, first); },
+      [&](int i) { any_lanes<kind, SCALAR>(call, i); });
 }
 
-template <class SCALAR, std::size_t... type>
-constexpr QuadricCallbacks table(std::index_sequence<type...>) {
-  return {{intersect_callback<static_cast<QuadricType>(type), SCALAR>...},
-          {occluded_callback<static_cast<QuadricType>(type), SCALAR>...}};
+template <class SCALAR, int... kind>
+constexpr QuadricCallbacks table(std::integer_sequence<int, kind...>) {
+  return {{intersect_callback<kind, SCALAR>...}, {occluded_callback<kind, SCALAR>...}};
 }
 
 }  // namespace
 
-constinit const QuadricCallbacks fast_callbacks = table<float>(std::make_index_sequence<quadric_type_count>());
-constinit const QuadricCallbacks robust_callbacks = table<double>(std::make_index_sequence<quadric_type_count>());
+constinit const QuadricCallbacks fast_callbacks = table<float>(std::make_integer_sequence<int, quadric_kind_count>());
+constinit const QuadricCallbacks robust_callbacks =
+    table<double>(std::make_integer_sequence<int, quadric_kind_count>());
 
 }  // namespace rayengine::ISA
