@@ -36,12 +36,7 @@ class NpyReader {
     const std::size_t count = row_count(value_of(header, "shape"));
     if (count > data_.size() / (ray_columns * value_size))
       fail("ends before its " + std::to_string(count) + " rows do; is it complete?");
-    std::vector<Ray> rays(count);
-    if (value_size == sizeof(double))
-      std::memcpy(rays.data(), data_.data(), count * sizeof(Ray));
-    else
-      for (std::size_t i = 0; i < count; ++i) rays[i] = widened(i);
-    return rays;
+    return value_size == sizeof(double) ? rows<double>(count) : rows<float>(count);
   }
 
  private:
@@ -97,10 +92,15 @@ class NpyReader {
     return rows;
   }
 
-  Ray widened(std::size_t row) const {
-    std::array<float, ray_columns> v;
-    std::memcpy(v.data(), data_.data() + row * sizeof v, sizeof v);
-    return {{v[0], v[1], v[2]}, v[3], {v[4], v[5], v[6]}, v[7]};
+  template <class T>
+  std::vector<Ray> rows(std::size_t count) const {
+    std::vector<Ray> rays(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<T, ray_columns> v;
+      std::memcpy(v.data(), data_.data() + i * sizeof v, sizeof v);
+      rays[i] = {{v[0], v[1], v[2]}, v[3], {v[4], v[5], v[6]}, v[7]};
+    }
+    return rays;
   }
 
   std::string_view data_;
