@@ -11,7 +11,8 @@ void add_if_finite(Box& sum, const Box& box) {
   if (box.finite()) sum.add(box);
 }
 
-/// The bounds of all that has an end: a floor without one should not keep a camera from framing what stands on it.
+}  // namespace
+
 Box finite_bounds(const Geometry& geometry) {
   Box box;
   for (std::uint32_t i = 0; i < geometry.vertices.size(); ++i) box.add(geometry.vertex(i));
@@ -19,8 +20,6 @@ Box finite_bounds(const Geometry& geometry) {
   for (const Instance& i : geometry.instances) add_if_finite(box, bounds(geometry, i));
   return box;
 }
-
-}  // namespace
 
 void complete(Scene& scene, bool has_camera) {
   if (!has_camera) {

@@ -35,7 +35,8 @@ Scene load_scene(const std::filesystem::path& file) {
     throw Error(file.string() + ": there is nothing to see; a scene needs an object");
   // What Embree takes as finite; beyond it single precision has no room left for squares.
   constexpr double farthest = 1e18;
-  if (scene.geometry->bounds.finite() && scene.geometry->bounds.extent() > farthest)
+  const Box bounds = finite_bounds(*scene.geometry);
+  if (!bounds.empty() && bounds.extent() > farthest)
     throw Error(file.string() + ": reaches farther than 1e18; scale it down");
   return scene;
 }

@@ -40,5 +40,6 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
       std::abort();
     }
   }
+  std::filesystem::remove(file);
   return 0;
 }

@@ -74,6 +74,9 @@ TEST_F(LoadScene, EmptyScenesAreRefused) {
 }
 
 TEST_F(LoadScene, WhatReachesBeyondSinglePrecisionIsRefused) {
+  const std::string far_off = R"({"objects": [{"type": "plane"}, {"type": "triangles", "indices": [[0, 1, 2]],
+    "vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]}]})";
+  EXPECT_NE(error(folder_.write("a.json", far_off)).find("reaches farther than 1e18"), std::string::npos);
   EXPECT_NE(error(folder_.write("a.nff", "s 1e19 0 0 1")).find("a.nff: reaches farther than 1e18; scale it down"),
             std::string::npos);
 }
