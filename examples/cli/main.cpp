@@ -1,3 +1,6 @@
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
@@ -47,11 +50,17 @@ int answer_parse(const CLI::App& app, const CLI::ParseError& error) {
   return report(wrong_usage, called(app), one_line(error.what()) + " (see '" + called(app) + " --help')");
 }
 
+/// A reader that went away, as `head` does, knows that it did.
+int answer_lost_output(const CLI::App& app) {
+  pollfd out{STDOUT_FILENO, 0, 0};
+  if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR)) return failed;
+  return report(failed, called(app), "standard output cannot be written: is the disk full?");
+}
+
 int run(const CLI::App& app, const rayengine::cli::Action& action) {
   try {
     const int code = action();
-    if (!std::cout.flush()) return report(failed, called(app), "standard output cannot be written: is the disk full?");
-    return code;
+    return std::cout.flush() ? code : answer_lost_output(app);
   } catch (const CLI::Error& error) {
     return report(wrong_usage, called(app), error.what());
   } catch (const std::bad_alloc&) {

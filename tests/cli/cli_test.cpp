@@ -138,7 +138,8 @@ TEST_F(CliFailure, FullStandardOutputIsTold) {
 }
 
 TEST_F(CliFailure, ClosedStandardOutputCostsNoFile) {
-  run("compare scene.nff --tracers embree,reference --size 16x16 --json a.json | true");
+  const test::Outcome outcome = run("compare scene.nff --tracers embree,reference --size 16x16 --json a.json | true");
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
   EXPECT_EQ(parse("a.json")["rows"].size(), 1u);
 }
 
