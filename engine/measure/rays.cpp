@@ -22,7 +22,9 @@ struct Leave {
 Leave leave(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const Surface surface = surface_at(geometry, ray, hit);
   const bool behind = glm::dot(surface.normal, ray.direction) > 0;
-  return {Departure(surface, single_precision), behind ? -surface.normal : surface.normal};
+  Leave result{{}, behind ? -surface.normal : surface.normal};
+  result.from.set(surface, single_precision);
+  return result;
 }
 
 Ray shadow_ray(const Departure& from, const Light& light) {

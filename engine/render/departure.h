@@ -32,8 +32,9 @@ struct Departure {
   glm::dvec3 normal{0};  ///< geometric
   double clearance = 0;  ///< distance along the normal
 
-  Departure() = default;
-  Departure(const Surface& s, const Limits& limits) : position(s.position), normal(s.normal) {
+  void set(const Surface& s, const Limits& limits) {
+    position = s.position;
+    normal = s.normal;
     const double seen =
         s.is_triangle ? triangle_clearance(s, limits.triangle_roundoff) : quadric_clearance(s, limits.quadric_roundoff);
     // The surface's own error counts for where the point is and for where the tracer's arithmetic sees the surface; and

@@ -77,9 +77,10 @@ void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
   hits_.resize(std::max(hits_.size(), rays.size()));
   gate_.closest(rays, {hits_.data(), rays.size()}, depth ? RayClass::bounce : RayClass::primary);
 
-  points_.clear();
+  points_.resize(std::max(points_.size(), rays.size()));
+  lit_ = 0;
   if (next) next->size = 0, next->reserve(2 * rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], queue.paths[first + i], next);
+  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], queue.paths[first + i], points_[lit_], next);
   for (const Light& light : picture_.lights) shine(light);
   if (!next) return;
   for (std::size_t begin = 0, end; begin < next->size; begin = end) {
@@ -88,7 +89,7 @@ void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
   }
 }
 
-void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Queue* next) {
+void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& point, Queue* next) {
   if (!hit.hit()) {
     invalid_ += (hit.status & status_invalid) != 0;
     radiance_[path.sample] += path.weight * picture_.environment(ray.direction);
@@ -97,9 +98,12 @@ void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, Queue* next)
   const Surface surface = surface_at(picture_.geometry, ray, hit);
   const Material& material = picture_.materials[surface.material];
   radiance_[path.sample] += path.weight * (material.ambient * material.color);
-  const LitPoint point{Departure(surface, picture_.limits), facing(surface.shading_normal, ray.direction),
-                       glm::vec3(-ray.direction), surface.material, path};
-  if (material.diffuse > 0 || material.specular > 0) points_.push_back(point);
+  point.departure.set(surface, picture_.limits);
+  point.normal = facing(surface.shading_normal, ray.direction);
+  point.view = glm::vec3(-ray.direction);
+  point.material = surface.material;
+  point.path = path;
+  lit_ += material.diffuse > 0 || material.specular > 0;
   if (next && (material.reflect > 0 || material.transmit > 0)) scatter(ray, surface, point, *next);
 }
 
@@ -134,8 +138,8 @@ void Waves::shine(const Light& light) {
   // t counts in lengths of the direction: at 1 the ray has reached a point light.
   const double tmax = is_point ? 1 : infinity;
   shadow_.size = 0;
-  shadow_.reserve(points_.size());
-  for (const LitPoint& p : points_) {
+  shadow_.reserve(lit_);
+  for (const LitPoint& p : std::span(points_.data(), lit_)) {
     const glm::dvec3 to_light = is_point ? light.position - p.departure.position : -light.direction;
     if (!(glm::dot(p.normal, to_light) > 0)) continue;
     const glm::vec3 unit(to_light * (1 / std::sqrt(glm::dot(to_light, to_light))));

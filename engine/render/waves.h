@@ -72,7 +72,7 @@ class Waves {
   };
 
   void trace(std::size_t depth, std::size_t first, std::size_t last);
-  void shade(const Ray& ray, const Hit& hit, const Path& path, Queue* next);
+  void shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& point, Queue* next);
   void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next);
   void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
              std::uint64_t& count);
@@ -84,7 +84,8 @@ class Waves {
   Queue shadow_;
   std::vector<Hit> hits_;
   std::vector<std::uint32_t> shadow_status_;
-  std::vector<LitPoint> points_;
+  std::vector<LitPoint> points_;  ///< the first lit_ of them count
+  std::size_t lit_ = 0;
   std::vector<glm::vec3> radiance_;
   std::array<std::uint64_t, 4> rays_{};
   std::uint64_t invalid_ = 0;

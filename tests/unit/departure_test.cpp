@@ -132,5 +132,38 @@ TEST(Departure, RaysPassThroughBothWallsOfABody) {
     }
 }
 
+/// A flat square of side 2 cut into rows of obtuse triangles, `height` high on a base of 1.
+Mesh slivers(double height) {
+  Mesh mesh;
+  const int rows = static_cast<int>(2 / height);
+  for (int row = 0; row <= rows; ++row)
+    for (int i = 0; i < 4; ++i) mesh.positions.emplace_back(-1.5 + i + 0.5 * (row % 2), -1 + row * height, 0);
+  for (int row = 0; row < rows; ++row)
+    for (int i = 0; i < 3; ++i) {
+      const auto below = static_cast<std::uint32_t>(4 * row + i), above = below + 4;
+      const std::uint32_t apex = row % 2;
+      mesh.triangles.emplace_back(below, below + 1, above + apex);
+      mesh.triangles.emplace_back(above, above + 1, below + 1 - apex);
+    }
+  for (std::size_t i = 1; i < mesh.triangles.size(); i += 2) std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
+  return mesh;
+}
+
+TEST(Departure, NoSliverShadowsAnother) {
+  for (const Place& place : places) {
+    if (place.offset * 0x1p-24 > place.scale * 0.002) continue;  // there single precision makes them overlap
+    const Affine map = place.map() * Affine::rotate({1, 2, 3}, 40);
+    GeometryBuilder builder;
+    builder.add(slivers(0.004), 0, map);
+    Scene scene = scene_of(builder, {.color = glm::vec3(1)}, {});
+    scene.camera = {.from = map.point({0.1, -0.2, 1}), .at = map.point({0, 0, 0}), .fov = 60, .size = {120, 120}};
+    scene.lights = {point_light(map.point({0.5, 0.3, 0.6}))};
+    const RenderResult result = render_with("embree", scene);
+    int dark = 0;
+    for (std::size_t i = 0; i < result.image.pixels.size(); i += 4) dark += result.image.pixels[i] == 0;
+    EXPECT_EQ(dark, 0) << "scale " << place.scale << ", offset " << place.offset;
+  }
+}
+
 }  // namespace
 }  // namespace rayengine::test

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "accel/geometry.h"
+#include "accel/ray.h"
+
+// A hit's primitive solved again in double, with a running bound on every rounding. Shared by surface.cpp and the two
+// kinds of primitives; not for callers.
+namespace rayengine {
+
+inline constexpr double roundoff = 0x1p-53;
+
+/// A bound for n roundings in a row (Higham, "Accuracy and Stability of Numerical Algorithms", lemma 3.1).
+constexpr double gamma(int n) { return n * roundoff / (1 - n * roundoff); }
+
+inline double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// A bound on the length, without a root.
+inline double sum_abs(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+/// v at unit length, with `square` its dot product with itself; zero stays zero.
+inline glm::dvec3 unit(const glm::dvec3& v, double square) {
+  if (square > 1e-280 && square < 1e280) return v * (1 / std::sqrt(square));
+  const double scale = largest(v);  // squares would vanish or overflow
+  if (!(scale > 0)) return {0, 0, 0};
+  const glm::dvec3 w = v / scale;
+  return w / glm::length(w);
+}
+
+inline glm::dvec3 unit(const glm::dvec3& v) { return unit(v, glm::dot(v, v)); }
+
+/// A ray in the space of the primitive's geometry, and what taking it there made unsure.
+struct LocalRay {
+  glm::dvec3 origin, direction;
+  glm::dvec3 origin_error{0}, direction_error{0};
+};
+
+/// `ray` taken through a map: five roundings a component, on top of what it brought along.
+LocalRay transformed(const LocalRay& ray, const WorldToObject& map);
+
+struct Solution {
+  double t = 0;
+  double error = 0;                  ///< bound on |t - exact t|
+  double distance = 0;               ///< bound on the distance of the point at t from the surface
+  glm::dvec3 normal{0};              ///< unit, in world space
+  glm::dvec2 barycentrics{0};        ///< of a triangle
+  double magnitude = 0, spread = 0;  ///< as in Surface
+};
+
+/// The crossing with the triangle's plane; at `t_guess` where it is seen edge-on.
+Solution solve_triangle(const PrimitiveRef& ref, const LocalRay& ray, double t_guess);
+
+/// The crossing with a quadric's side that `t_guess` is nearest to, or with the plane of its cap.
+Solution solve_quadric(const PrimitiveRef& ref, const LocalRay& ray, double t_guess);
+
+/// A normal of the geometry that holds the primitive, taken to world space; not normalised.
+inline glm::dvec3 to_world(const Instance* instance, const glm::dvec3& normal) {
+  return instance ? instance->to_group.normal_to_world(normal) : normal;
+}
+
+}  // namespace rayengine
