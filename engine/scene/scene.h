@@ -24,12 +24,13 @@ struct Camera {
 struct Light {
   enum class Type { point, directional };
   Type type = Type::point;
-  glm::dvec3 position{0};         ///< point: where it is
-  glm::dvec3 direction{0, 0, -1}; ///< directional: where its light travels; any length
-  glm::vec3 color{1};             ///< intensity, without falloff over distance
+  glm::dvec3 position{0};          ///< point: where it is
+  glm::dvec3 direction{0, 0, -1};  ///< directional: where its light travels; any length
+  glm::vec3 color{1};              ///< intensity, without falloff over distance
 };
 
-/// Blinn-Phong with Whitted's mirror and glass. Factors multiply `color`, linear RGB.
+/// Blinn-Phong with Whitted's mirror and glass. `ambient`, `diffuse` and `transmit` multiply `color`, linear RGB;
+/// highlights and reflections are not tinted.
 struct Material {
   glm::vec3 color{0.8f};
   float ambient = 0;
@@ -41,7 +42,8 @@ struct Material {
   float ior = 1;
 };
 
-/// What rays see that hit nothing: one colour, or a latitude-longitude image (its middle column in +x, its top row in +z).
+/// What rays see that hit nothing: one colour, or a latitude-longitude image (its middle column in +x, its top row in
+/// +z).
 struct Background {
   glm::vec3 color{0};
   std::shared_ptr<const Image> image;
