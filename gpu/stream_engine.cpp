@@ -2,7 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -20,11 +20,19 @@ constexpr std::uint64_t patience = 10'000'000'000;  // nanoseconds until a batch
 
 /// Where single precision is tested in software, tests are dear and lists cheap.
 std::uint32_t treelet_size(const StreamOptions& options, const GpuInfo& gpu) {
-  return options.treelet_size ? options.treelet_size : gpu.software ? 16 : 512;
+  return options.treelet_size ? options.treelet_size : gpu.software ? 8 : 512;
 }
 
 GLsizei batch_side(const StreamOptions& options, const GpuInfo& gpu) {
   return std::min(options.batch_side ? options.batch_side : gpu.software ? 256 : 512, gpu.texture_size);
+}
+
+/// Calls work(i) for all i below `count`, in parallel.
+template <class Work>
+void for_blocks(std::size_t count, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, block), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+  });
 }
 
 }  // namespace
@@ -63,64 +71,74 @@ void StreamEngine::look_behind(StreamTraveller& t, const Ray& ray) const {
   t.fresh = true;
 }
 
-void StreamEngine::write(const StreamBatch& batch, std::size_t i, StreamTraveller& t,
-                         std::span<const TreeletEntry> list) const {
-  glm::uvec4 treelets(no_id), entries(0);
-  entries.x = t.floor_rank;
+/// Puts what the walk found in the form that shaders read.
+void StreamEngine::list(StreamTraveller& t, std::span<const TreeletEntry> found) const {
+  t.treelets = glm::uvec4(no_id);
+  t.entries = glm::uvec4(t.floor_rank, 0, 0, 0);
   t.listed = 0;
-  if (t.fresh && treelets_.unbounded.size() > 0) treelets[static_cast<int>(t.listed++)] = unbounded_treelet(treelets_);
-  for (const TreeletEntry& entry : list) {
+  if (t.fresh && treelets_.unbounded.size() > 0)
+    t.treelets[static_cast<int>(t.listed++)] = unbounded_treelet(treelets_);
+  for (const TreeletEntry& entry : found) {
     const double enter = t.frame.to_frame(entry.t);
     t.last_entry = float_below(enter - frame_slack(enter));
-    if (t.listed > 0) entries[static_cast<int>(t.listed)] = std::bit_cast<std::uint32_t>(t.last_entry);
-    treelets[static_cast<int>(t.listed++)] = entry.treelet;
+    if (t.listed > 0) t.entries[static_cast<int>(t.listed)] = std::bit_cast<std::uint32_t>(t.last_entry);
+    t.treelets[static_cast<int>(t.listed++)] = entry.treelet;
   }
   t.fresh = false;
-  batch.origins()[i] = {t.frame.origin, t.frame.tmin};
-  batch.directions()[i] = {t.frame.direction, t.best_rank == no_id ? t.frame.tmax : t.best_t};
-  batch.lists()[i] = treelets;
-  batch.entries()[i] = entries;
 }
 
-/// Returns the length of the longest list.
-std::uint32_t StreamEngine::list_block(Slot& slot, std::size_t first, std::size_t count) const {
+void StreamEngine::list_block(std::span<StreamTraveller> travellers) const {
   const std::uint32_t length = list_length - (treelets_.unbounded.size() > 0 ? 1 : 0);
+  const std::size_t count = travellers.size();
   std::array<Ray, block> rays;
   std::array<WalkCursor, block> cursors;
   std::array<TreeletEntry, block * list_length> lists;
   std::array<std::uint32_t, block> counts;
-  const std::span<StreamTraveller> travellers(slot.travellers.data() + first, count);
   for (std::size_t i = 0; i < count; ++i) rays[i] = travellers[i].world, cursors[i] = travellers[i].cursor;
   walk(treelets_, {rays.data(), count}, {cursors.data(), count}, length, lists, {counts.data(), count});
-  std::uint32_t longest = 0;
   for (std::size_t i = 0; i < count; ++i) {
     travellers[i].cursor = cursors[i];
-    write(slot.batch, first + i, travellers[i], {lists.data() + i * length, counts[i]});
-    longest = std::max(longest, travellers[i].listed);
+    list(travellers[i], {lists.data() + i * length, counts[i]});
   }
-  return longest;
 }
 
-std::uint32_t StreamEngine::list_treelets(Slot& slot) {
-  const std::size_t blocks = (slot.travellers.size() + block - 1) / block;
-  const auto longest = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, blocks), 0u,
-      [&](const auto& range, std::uint32_t result) {
-        for (std::size_t b = range.begin(); b < range.end(); ++b)
-          result = longest(result, list_block(slot, b * block, std::min(block, slot.travellers.size() - b * block)));
-        return result;
-      },
-      longest);
+/// Gives every traveller a place in the batch: those who go to the same treelets side by side, since shaders run in
+/// step with their neighbours, and those with nowhere to go behind all others. Returns how many have somewhere to go.
+std::size_t StreamEngine::take_places(Slot& slot) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(slot.travellers.size());
+  for_blocks(keys.size(), [&](std::size_t i) {
+    const glm::uvec4& treelets = slot.travellers[i].treelets;
+    keys[i] = {std::uint64_t{treelets.x} << 32 | treelets.y, static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(keys);
+  slot.order.resize(keys.size());
+  std::transform(keys.begin(), keys.end(), slot.order.begin(), [](const auto& key) { return key.second; });
+  const auto nowhere = std::pair(std::uint64_t{no_id} << 32, 0u);
+  return static_cast<std::size_t>(std::lower_bound(keys.begin(), keys.end(), nowhere) - keys.begin());
 }
 
 void StreamEngine::send(Slot& slot, StreamQuery query) {
-  const std::uint32_t rounds = list_treelets(slot);
-  const std::size_t count = slot.travellers.size();
-  const auto lists = slot.batch.lists();
-  std::fill(lists.begin() + static_cast<std::ptrdiff_t>(count),
-            lists.begin() + static_cast<std::ptrdiff_t>(slot.batch.rays_in_rows(count)), glm::uvec4(no_id));
-  slot.batch.upload(count);
+  const std::span<StreamTraveller> travellers(slot.travellers);
+  tbb::parallel_for(std::size_t{0}, (travellers.size() + block - 1) / block, [&](std::size_t b) {
+    list_block(travellers.subspan(b * block, std::min(block, travellers.size() - b * block)));
+  });
+  slot.sent = take_places(slot);
+  const StreamBatch& batch = slot.batch;
+  for_blocks(slot.sent, [&](std::size_t i) {
+    const StreamTraveller& t = travellers[slot.order[i]];
+    batch.origins()[i] = {t.frame.origin, t.frame.tmin};
+    batch.directions()[i] = {t.frame.direction, t.best_rank == no_id ? t.frame.tmax : t.best_t};
+    batch.lists()[i] = t.treelets;
+    batch.entries()[i] = t.entries;
+  });
+  const auto shorter = [](const StreamTraveller& a, const StreamTraveller& b) { return a.listed < b.listed; };
+  if (slot.sent > 0) dispatch(slot, query, std::max_element(travellers.begin(), travellers.end(), shorter)->listed);
+}
+
+void StreamEngine::dispatch(Slot& slot, StreamQuery query, std::uint32_t rounds) {
+  const auto rest = slot.batch.lists().subspan(slot.sent, slot.batch.rays_in_rows(slot.sent) - slot.sent);
+  std::fill(rest.begin(), rest.end(), glm::uvec4(no_id));
+  slot.batch.upload(slot.sent);
   kernels(query).run(slot.batch, textures_, rounds);
   slot.batch.read_back();
 }
@@ -130,6 +148,15 @@ bool StreamEngine::settled(const StreamTraveller& t, StreamQuery query) const {
   if (t.cursor.finished()) return true;
   if (t.best_rank == no_id) return false;
   return query == StreamQuery::any || (t.listed > 0 && t.best_t < t.last_entry);
+}
+
+/// Keeps the nearer of what was known and what the device found.
+void StreamEngine::enter(StreamTraveller& t, const StreamBatch::Answer& answer) {
+  const bool nearer =
+      t.best_rank == no_id || answer.t < t.best_t || (answer.t == t.best_t && answer.rank < t.best_rank);
+  if (answer.rank == no_id || !nearer) return;
+  t.best_t = answer.t, t.best_rank = answer.rank;
+  t.world.tmax = std::min(t.world.tmax, t.frame.to_world(answer.t + frame_slack(answer.t)));
 }
 
 /// Whether the traveller's journey has ended.
@@ -142,22 +169,16 @@ bool StreamEngine::arrived(StreamTraveller& t, std::span<const Ray> rays, Stream
 }
 
 void StreamEngine::collect(Slot& slot, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
-  if (!slot.batch.finished(patience)) throw Error("the GPU did not answer within 10 seconds; use --tracer embree");
+  if (slot.sent > 0 && !slot.batch.finished(patience))
+    throw Error("the GPU did not answer within 10 seconds; use --tracer embree");
   std::vector<char> done(slot.travellers.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, done.size(), block), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      StreamTraveller& t = slot.travellers[i];
-      const auto [found_t, rank] = slot.batch.answers()[i];
-      const bool nearer = t.best_rank == no_id || found_t < t.best_t || (found_t == t.best_t && rank < t.best_rank);
-      if (rank != no_id && nearer) {
-        t.best_t = found_t, t.best_rank = rank;
-        t.world.tmax = std::min(t.world.tmax, t.frame.to_world(found_t + frame_slack(found_t)));
-      }
-      done[i] = arrived(t, rays, query, arrive);
-    }
+  for_blocks(done.size(), [&](std::size_t i) {
+    StreamTraveller& t = slot.travellers[slot.order[i]];
+    if (i < slot.sent) enter(t, slot.batch.answers()[i]);
+    done[i] = arrived(t, rays, query, arrive);
   });
   for (std::size_t i = 0; i < done.size(); ++i)
-    if (!done[i]) again_.push_back(slot.travellers[i]);
+    if (!done[i]) again_.push_back(slot.travellers[slot.order[i]]);
 }
 
 /// First those who must go on, then new ones.

@@ -15,9 +15,10 @@ namespace rayengine {
 struct StreamTraveller : Traveller {
   Ray world;  ///< the caller's, with tmax lowered to the best hit
   WalkCursor cursor;
-  bool fresh = true;         ///< has yet to be tested against what has no bounds
-  std::uint32_t listed = 0;  ///< treelets in the batch now
-  float last_entry = 0;      ///< where it enters the last of them
+  bool fresh = true;                   ///< has yet to be tested against what has no bounds
+  std::uint32_t listed = 0;            ///< treelets in the batch now
+  glm::uvec4 treelets{0}, entries{0};  ///< as gpu/shaders/stream/ray.glsl has them
+  float last_entry = 0;                ///< where it enters the last of them
 };
 
 /// The stream tracer's loop (see make_stream_tracer).
@@ -37,16 +38,19 @@ class StreamEngine : public DeviceEngine {
     explicit Slot(GLsizei side) : batch(side) {}
     StreamBatch batch;
     std::vector<StreamTraveller> travellers;
+    std::vector<std::uint32_t> order;  ///< by place in the batch
+    std::size_t sent = 0;              ///< those before it went to the device; the others had nowhere to go
   };
 
   StreamTraveller set_out(std::uint32_t index, const Ray& ray) const;
   void look_behind(StreamTraveller& traveller, const Ray& ray) const;
   const StreamKernels& kernels(StreamQuery query);
   void send(Slot& slot, StreamQuery query);
-  std::uint32_t list_treelets(Slot& slot);
-  std::uint32_t list_block(Slot& slot, std::size_t first, std::size_t count) const;
-  void write(const StreamBatch& batch, std::size_t i, StreamTraveller& traveller,
-             std::span<const TreeletEntry> list) const;
+  void list(StreamTraveller& traveller, std::span<const TreeletEntry> found) const;
+  void list_block(std::span<StreamTraveller> travellers) const;
+  static std::size_t take_places(Slot& slot);
+  void dispatch(Slot& slot, StreamQuery query, std::uint32_t rounds);
+  static void enter(StreamTraveller& traveller, const StreamBatch::Answer& answer);
   void collect(Slot& slot, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive);
   bool arrived(StreamTraveller& traveller, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) const;
   void fill(Slot& slot, std::span<const Ray> rays, std::size_t& next);
