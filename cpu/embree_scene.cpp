@@ -24,7 +24,9 @@ float clamped(float a) { return std::clamp(a, -static_cast<float>(embree_range),
 void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& bucket = *static_cast<const QuadricBucket*>(args->geometryUserPtr);
   const Geometry& geometry = *bucket.geometry;
-  const Box box = bounds(geometry, geometry.quadrics[bucket.quadrics[args->primID]]);
+  Box box = bounds(geometry, geometry.quadrics[bucket.quadrics[args->primID]]);
+  // Rays from afar start at the box of what is finite, and may have passed an unbounded quadric by then: see RayLoader.
+  if (!box.finite()) box = {glm::dvec3(-infinity), glm::dvec3(infinity)};
   const double pad = bucket.padding;
   RTCBounds& out = *args->bounds_o;
   out.lower_x = clamped(float_below(box.lower.x - pad)), out.upper_x = clamped(float_above(box.upper.x + pad));

@@ -59,6 +59,17 @@ Case mixed() {
   return {"mixed", builder.build()};
 }
 
+/// Unbounded below and finite above.
+Case floor_and_bodies() {
+  GeometryBuilder builder;
+  builder.add(QuadricShape{QuadricType::plane, false, {}, {}, {}}, 0, Affine::translate({0, 0, -4}));
+  for (int i = 0; i < 8; ++i) {
+    builder.add(QuadricShape{}, 0, placement(i));
+    builder.add(torus(8, 6), 0, placement(i + 3));
+  }
+  return {"floor", builder.build()};
+}
+
 Case far_away() {
   GeometryBuilder builder;
   for (int i = 0; i < 8; ++i) {
@@ -85,6 +96,7 @@ std::vector<Case> all_cases() {
   cases.push_back({"torus", builder.build()});
   cases.push_back(instances());
   cases.push_back(mixed());
+  cases.push_back(floor_and_bodies());
   cases.push_back(far_away());
   return cases;
 }

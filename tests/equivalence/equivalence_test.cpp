@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
 #include <tuple>
 
 #include "cpu/reference_tracer.h"
@@ -38,7 +39,8 @@ class Equivalence : public testing::TestWithParam<std::tuple<const char*, Case>>
   }
 };
 INSTANTIATE_TEST_SUITE_P(Tracers, Equivalence,
-                         testing::Combine(testing::Values("embree", "stream", "objects"), testing::ValuesIn(test::all_cases())),
+                         testing::Combine(testing::Values("embree", "stream", "objects"),
+                                          testing::ValuesIn(test::all_cases())),
                          [](const auto& info) {
                            return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
                          });
@@ -79,6 +81,15 @@ TEST_P(Equivalence, RobustOnAimedRays) {
 
 TEST_P(Equivalence, FastOnRandomRays) {
   expect_equivalent(Precision::fast, random_rays(geometry().bounds, 1500, 2), RayClass::bounce);
+}
+
+/// Tracers in single precision bring such rays nearer first, and must not lose what lies on the way.
+TEST_P(Equivalence, RobustOnRaysFromAfar) {
+  auto rays = random_rays(geometry().bounds, 500, 6);
+  const double distance = geometry().bounds.finite() ? 100 * glm::length(geometry().bounds.size()) : 1000;
+  for (Ray& ray : rays) ray.origin -= distance * ray.direction;
+  expect_equivalent(Precision::robust, rays, RayClass::primary);
+  expect_equivalent(Precision::robust, rays, RayClass::bounce);
 }
 
 TEST_P(Equivalence, RobustOnRaysThatLeaveSurfaces) {
