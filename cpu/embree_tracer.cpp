@@ -87,8 +87,28 @@ void check_sizes(std::size_t rays, std::size_t answers) {
   if (rays != answers) throw Error("a query needs as many answers as rays");
 }
 
-/// Coherent rays gain from packets; the others are traced one by one.
+/// Primary and shadow rays are coherent as they come.
 bool is_coherent(RayClass ray_class) { return ray_class != RayClass::bounce; }
+
+/// Rays into one octant visit a tree in the same order: they gain from packets whatever made them.
+bool share_octant(std::span<const Ray> rays) {
+  const auto octant = [](const Ray& r) {
+    return (r.direction.x < 0) | (r.direction.y < 0) << 1 | (r.direction.z < 0) << 2;
+  };
+  return std::all_of(rays.begin(), rays.end(), [&](const Ray& r) { return octant(r) == octant(rays[0]); });
+}
+
+/// Calls `together` or `alone` for runs of rays, whole packets each, as their octants have it.
+template <class Together, class Alone>
+void for_runs(std::span<const Ray> rays, std::size_t lanes, Together&& together, Alone&& alone) {
+  const auto packet = [&](std::size_t first) { return rays.subspan(first, std::min(lanes, rays.size() - first)); };
+  for (std::size_t first = 0, end; first < rays.size(); first = end) {
+    const bool coherent = share_octant(packet(first));
+    for (end = first + lanes; end < rays.size() && share_octant(packet(end)) == coherent;) end += lanes;
+    end = std::min(end, rays.size());
+    coherent ? together(first, end - first) : alone(first, end - first);
+  }
+}
 
 template <class Work>
 void for_ranges(std::size_t count, Work&& work) {
@@ -191,9 +211,16 @@ void EmbreeTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayCl
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
     const auto some = rays.subspan(first, last - first);
     const auto out = hits.subspan(first, last - first);
-    if (!is_coherent(ray_class)) return closest_packets<RTCRayHit, 1>(some, out, ray_class);
-    if (scene_.native_packet() == 16) return closest_packets<RTCRayHit16, 16>(some, out, ray_class);
-    closest_packets<RTCRayHit8, 8>(some, out, ray_class);
+    const bool wide = scene_.native_packet() == 16;
+    const auto together = [&](std::size_t from, std::size_t count) {
+      if (wide) return closest_packets<RTCRayHit16, 16>(some.subspan(from, count), out.subspan(from, count), ray_class);
+      closest_packets<RTCRayHit8, 8>(some.subspan(from, count), out.subspan(from, count), ray_class);
+    };
+    const auto alone = [&](std::size_t from, std::size_t count) {
+      closest_packets<RTCRayHit, 1>(some.subspan(from, count), out.subspan(from, count), ray_class);
+    };
+    if (is_coherent(ray_class)) return together(0, some.size());
+    for_runs(some, wide ? 16 : 8, together, alone);
   });
 }
 

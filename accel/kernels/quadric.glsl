@@ -5,10 +5,10 @@
 // Moves the ray's origin to where the ray passes the object's centre, so that the coefficients are formed from small
 // numbers: p = o + s d. The second step corrects the rounding of the first.
 KERNEL void approach(VEC3 o, VEC3 d, OUT(VEC3) p, OUT(REAL) s) {
-  REAL dd = (d.x * d.x + d.y * d.y) + d.z * d.z;
-  REAL s1 = -((o.x * d.x + o.y * d.y) + o.z * d.z) / dd;
+  REAL per_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);  // any s will do: its own rounding is in p as well
+  REAL s1 = -((o.x * d.x + o.y * d.y) + o.z * d.z) * per_dd;
   p = VEC3(o.x + s1 * d.x, o.y + s1 * d.y, o.z + s1 * d.z);
-  REAL s2 = -((p.x * d.x + p.y * d.y) + p.z * d.z) / dd;
+  REAL s2 = -((p.x * d.x + p.y * d.y) + p.z * d.z) * per_dd;
   p = VEC3(p.x + s2 * d.x, p.y + s2 * d.y, p.z + s2 * d.z);
   s = s1 + s2;
 }
@@ -36,12 +36,14 @@ KERNEL void general_coefficients(REAL A, REAL B, REAL C, REAL D, REAL E, REAL F,
   c = ((gx * p.x + gy * p.y) + gz * p.z) + gw;
 }
 
+// Above zero where there are two roots. A double root is none: tangent rays miss. NaN is not above zero.
+KERNEL REAL discriminant(REAL a, REAL b, REAL c) { return b * b - a * c; }
+
 // Roots of a r^2 + 2 b r + c = 0 in order, each from the expression that does not cancel; REAL_MAX where there is none.
-// A double root is none: tangent rays miss. NaN coefficients give no roots.
 KERNEL void roots(REAL a, REAL b, REAL c, OUT(REAL) near, OUT(REAL) far) {
-  REAL discriminant = b * b - a * c;
-  BOOL real = discriminant > 0;
-  REAL h = root(pick(real, discriminant, a - a));
+  REAL under_root = discriminant(a, b, c);
+  BOOL real = under_root > 0;
+  REAL h = root(pick(real, under_root, a - a));
   REAL q = -(b + pick(b < 0, -h, h));
   REAL none = REAL_MAX;
   REAL r0 = pick(both(real, a != 0), q / a, none);

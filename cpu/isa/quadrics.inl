@@ -95,29 +95,32 @@ INLINE void consider(REAL t, double part, const Rays<REAL>& rays, Found<REAL>& b
   best.part = kernels::pick(nearer, splat<REAL>(part), best.part);
 }
 
+/// Coefficients of a r^2 + 2 b r + c = 0 along p + r d.
 template <class REAL>
-INLINE void general_roots(const GeneralForm& g, const Vec3<REAL>& p, const Vec3<REAL>& d, REAL& near, REAL& far) {
+struct Quadratic {
+  REAL a, b, c;
+};
+
+template <class REAL>
+INLINE Quadratic<REAL> general_quadratic(const GeneralForm& g, const Vec3<REAL>& p, const Vec3<REAL>& d) {
   const auto& m = g.matrix;
   const double* q = &m.front();
-  REAL a, b, c;
+  Quadratic<REAL> f;
   kernels::general_coefficients(splat<REAL>(q[0]), splat<REAL>(q[1]), splat<REAL>(q[2]), splat<REAL>(q[3]),
                                 splat<REAL>(q[4]), splat<REAL>(q[5]), splat<REAL>(q[6]), splat<REAL>(q[7]),
-                                splat<REAL>(q[8]), splat<REAL>(q[9]), p, d, a, b, c);
-  kernels::roots(a, b, c, near, far);
+                                splat<REAL>(q[8]), splat<REAL>(q[9]), p, d, f.a, f.b, f.c);
+  return f;
 }
 
 template <QuadricType type, class REAL>
-INLINE void side_roots(const QuadricBucket& bucket, const Quadric& q, const Vec3<REAL>& p, const Vec3<REAL>& d,
-                       REAL& near, REAL& far) {
-  if constexpr (type == QuadricType::general) {
-    general_roots(bucket.geometry->forms.data()[q.form], p, d, near, far);
-  } else {
-    constexpr Form f = form<type>();
-    REAL a, b, c;
-    kernels::diagonal_coefficients(splat<REAL>(f.A), splat<REAL>(f.E), splat<REAL>(f.H), splat<REAL>(f.I),
-                                   splat<REAL>(f.J), p, d, a, b, c);
-    kernels::roots(a, b, c, near, far);
-  }
+INLINE Quadratic<REAL> quadratic(const QuadricBucket& bucket, const Quadric& q, const Vec3<REAL>& p,
+                                 const Vec3<REAL>& d) {
+  if constexpr (type == QuadricType::general) return general_quadratic(bucket.geometry->forms.data()[q.form], p, d);
+  constexpr Form m = form<type>();
+  Quadratic<REAL> f;
+  kernels::diagonal_coefficients(splat<REAL>(m.A), splat<REAL>(m.E), splat<REAL>(m.H), splat<REAL>(m.I),
+                                 splat<REAL>(m.J), p, d, f.a, f.b, f.c);
+  return f;
 }
 
 template <QuadricType type, class REAL>
@@ -145,8 +148,9 @@ struct Crossings {
 };
 
 template <int kind, class REAL>
-INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, Vec3<REAL> o, Vec3<REAL> d) {
+INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, const Rays<REAL>& rays) {
   constexpr QuadricType type = type_of(kind);
+  Vec3<REAL> o = rays.o, d = rays.d;
   if constexpr (kind == ball_kind)
     to_unit_ball(q.to_object, o, d);
   else
@@ -154,17 +158,21 @@ INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, 
   Vec3<REAL> p;
   REAL s, near, far;
   kernels::approach(o, d, p, s);
-  side_roots<type>(bucket, q, p, d, near, far);
+  const Quadratic<REAL> f = quadratic<type>(bucket, q, p, d);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
+  // Most rays that meet a quadric's box pass it by: those are spared the divisions and the root.
+  if (none(kernels::both(kernels::discriminant(f.a, f.b, f.c) > 0, rays.active)) && (kind == ball_kind || !q.capped))
+    return {largest, largest, largest, largest};
+  kernels::roots(f.a, f.b, f.c, near, far);
   Crossings<REAL> found{near, far, largest, largest};
   if (kind != ball_kind) {
     found.near = clipped<type>(bucket, q, near, p, d);
     found.far = clipped<type>(bucket, q, far, p, d);
   }
   if (kind != ball_kind && q.capped) {
-    constexpr Form f = form<type>();
+    constexpr Form m = form<type>();
     const auto cap = [&](double at) {
-      return kernels::cap(splat<REAL>(f.A), splat<REAL>(f.E), splat<REAL>(f.H), splat<REAL>(f.I), splat<REAL>(f.J),
+      return kernels::cap(splat<REAL>(m.A), splat<REAL>(m.E), splat<REAL>(m.H), splat<REAL>(m.I), splat<REAL>(m.J),
                           splat<REAL>(at), p, d);
     };
     // The apex of a cone is a cap without area.
@@ -177,7 +185,7 @@ INLINE Crossings<REAL> crossings(const QuadricBucket& bucket, const Quadric& q, 
 
 template <int kind, class REAL>
 INLINE Found<REAL> intersect(const QuadricBucket& bucket, const Quadric& q, const Rays<REAL>& rays) {
-  const Crossings<REAL> c = crossings<kind>(bucket, q, rays.o, rays.d);
+  const Crossings<REAL> c = crossings<kind>(bucket, q, rays);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
   Found<REAL> best{largest, REAL{}, {}};
   consider(c.near, 0, rays, best);
@@ -320,7 +328,7 @@ INLINE double our_t(const Call& call, int ray, float t) {
 template <int kind, class REAL>
 INLINE void collect(const Call& call) {
   const Rays<REAL> rays = gather<REAL>(call, 0);
-  const Crossings<REAL> c = crossings<kind>(*call.bucket, *call.quadric, rays.o, rays.d);
+  const Crossings<REAL> c = crossings<kind>(*call.bucket, *call.quadric, rays);
   const REAL t[4] = {c.near, c.far, c.lower_cap, c.upper_cap};
   for (int i = 0; i < 4; ++i)
     if (t[i] > rays.tmin && t[i] < rays.nearest && t[i] < std::numeric_limits<REAL>::max())
