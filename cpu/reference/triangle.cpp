@@ -59,7 +59,7 @@ Fraction exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t
 std::array<double, 2> barycentrics(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
   const auto [a, b, c] = estimated_volumes(ray, geometry, triangle);
   const quad sum = a.value + b.value + c.value;
-  return {static_cast<double>(b.value / sum), static_cast<double>(c.value / sum)};
+  return {static_cast<double>(b.value / sum) + 0, static_cast<double>(c.value / sum) + 0};  // no negative zeros
 }
 
 Vector<quad> normal(const Geometry& geometry, std::uint32_t triangle) {

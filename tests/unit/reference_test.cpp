@@ -310,6 +310,7 @@ TEST(Reference, ASharedEdgeIsATieThatTheLowestIdWins) {
   const Ray on_edge = ray({0, 0, 1}, {1. / 3, 1. / 3, -1});
   EXPECT_EQ(closest(*tracer, on_edge).primitive, 0u);
   EXPECT_EQ(closest(*tracer, on_edge).status, status_hit | status_tie);
+  EXPECT_FALSE(std::signbit(closest(*tracer, on_edge).u)) << "zero has one sign";
   EXPECT_EQ(all(*tracer, on_edge).size(), 2u);
   const Ray beside = ray({0, 0, 1}, {1. / 3, std::nextafter(1. / 3, 1.), -1});
   EXPECT_EQ(all(*tracer, beside).size(), 1u);
