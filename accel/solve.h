@@ -21,16 +21,26 @@ inline double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std
 /// A bound on the length, without a root.
 inline double sum_abs(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
-/// v at unit length, with `square` its dot product with itself; zero stays zero.
-inline glm::dvec3 unit(const glm::dvec3& v, double square) {
-  if (square > 1e-280 && square < 1e280) return v * (1 / std::sqrt(square));
+/// A vector's direction, and one over its length. Zero has the direction zero, and an infinite second.
+struct Direction {
+  glm::dvec3 unit;
+  double per_length;
+};
+
+inline Direction normalised(const glm::dvec3& v) {
+  const double square = glm::dot(v, v);
+  if (square > 1e-280 && square < 1e280) {
+    const double per_length = 1 / std::sqrt(square);
+    return {per_length * v, per_length};
+  }
   const double scale = largest(v);  // squares would vanish or overflow
-  if (!(scale > 0)) return {0, 0, 0};
+  if (!(scale > 0)) return {glm::dvec3(0), std::numeric_limits<double>::infinity()};
   const glm::dvec3 w = v / scale;
-  return w / glm::length(w);
+  const double length = glm::length(w);
+  return {w / length, 1 / length / scale};
 }
 
-inline glm::dvec3 unit(const glm::dvec3& v) { return unit(v, glm::dot(v, v)); }
+inline glm::dvec3 unit(const glm::dvec3& v) { return normalised(v).unit; }
 
 /// A ray in the space of the primitive's geometry, and what taking it there made unsure.
 struct LocalRay {

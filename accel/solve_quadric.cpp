@@ -119,9 +119,9 @@ Solution solve_side(const Form& form, const PrimitiveRef& ref, const LocalRay& g
   s.error = along + gamma(4) * std::abs(r) + gamma(2) * (std::abs(k.shift) + std::abs(s.t));
   const glm::dvec3 steepest =
       to_world(ref.instance, map.normal_to_world(form.gradient(k.ray.origin + r * k.ray.direction)));
-  const double square = glm::dot(steepest, steepest);
-  s.distance = e / std::sqrt(square);
-  s.normal = unit(steepest, square);
+  const auto [normal, per_length] = normalised(steepest);
+  s.distance = e * per_length;
+  s.normal = normal;
   return s;
 }
 
@@ -138,9 +138,9 @@ Solution solve_cap(const PrimitiveRef& ref, const LocalRay& group_ray, double at
   Solution s;
   s.t = k.shift + r;
   s.error = e / std::abs(climb) + gamma(2) * (std::abs(k.shift) + std::abs(s.t));
-  const double square = glm::dot(steepest, steepest);
-  s.distance = e / std::sqrt(square);
-  s.normal = unit(steepest, square);
+  const auto [normal, per_length] = normalised(steepest);
+  s.distance = e * per_length;
+  s.normal = normal;
   return s;
 }
 

@@ -20,15 +20,15 @@ Solution solve_triangle(const PrimitiveRef& ref, const LocalRay& ray, double t_g
   const glm::uvec3 corners = g.triangles[ref.triangle()];
   const glm::dvec3 a = g.vertex(corners.x), b = g.vertex(corners.y), c = g.vertex(corners.z);
   const glm::dvec3 ab = b - a, ac = c - a, bc = c - b, ao = a - ray.origin;
-  const glm::dvec3 n = glm::cross(ab, ac), n_abs = cross_abs(ab, ac), n_world = to_world(ref.instance, n);
-  const double nn = glm::dot(n, n), length = std::sqrt(nn);
-  // A distance along the normal in an instance's group is this much of one in the world.
-  const double stretch = ref.instance ? length / glm::length(n_world) : 1;
+  const glm::dvec3 n = glm::cross(ab, ac), n_abs = cross_abs(ab, ac);
+  const Direction flat = normalised(n), world = ref.instance ? normalised(to_world(ref.instance, n)) : flat;
+  // A distance along the normal in an instance's group, times this, is one in the world.
+  const double stretch = ref.instance ? world.per_length / flat.per_length : 1;
 
-  Solution s{.t = t_guess, .error = infinity, .normal = unit(n_world, ref.instance ? glm::dot(n_world, n_world) : nn)};
+  Solution s{.t = t_guess, .error = infinity, .normal = world.unit};
   s.magnitude = stretch * std::max({largest(a), largest(b), largest(c)});
   if (ref.instance) s.magnitude += largest(ref.instance->to_group.origin);
-  s.spread = stretch * std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac) * glm::dot(bc, bc)) / length;
+  s.spread = world.per_length * std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac) * glm::dot(bc, bc));
 
   const double over = glm::dot(n, ao), under = glm::dot(n, ray.direction);
   const double over_error = gamma(9) * dot_abs(n_abs, ao) + glm::dot(n_abs, ray.origin_error);
@@ -36,9 +36,10 @@ Solution solve_triangle(const PrimitiveRef& ref, const LocalRay& ray, double t_g
   if (std::abs(under) <= under_error) return s;  // seen edge-on: nothing better can be said than what is known
   s.t = over / under;
   s.error = (over_error + std::abs(s.t) * under_error) / (std::abs(under) - under_error) + roundoff * std::abs(s.t);
-  s.distance = stretch * s.error * std::abs(under) / length;
+  s.distance = s.error * std::abs(under) * world.per_length;
   const glm::dvec3 p = ray.origin + s.t * ray.direction - a;
-  s.barycentrics = glm::dvec2(glm::dot(n, glm::cross(p, ac)), glm::dot(n, glm::cross(ab, p))) / nn;
+  s.barycentrics =
+      flat.per_length * glm::dvec2(glm::dot(flat.unit, glm::cross(p, ac)), glm::dot(flat.unit, glm::cross(ab, p)));
   return s;
 }
 

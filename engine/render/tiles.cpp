@@ -26,15 +26,14 @@ Tiling::Tiling(const glm::ivec2& size, int spp, std::size_t batch) : size(size),
   const auto samples = static_cast<std::size_t>(spp);
   while (square(2 * side) * samples <= batch && side < std::max(size.x, size.y)) side *= 2;
   pass = static_cast<int>(std::clamp<std::size_t>(batch / square(side), 1, samples));
+  for (std::uint32_t i = 0; i < square(side); ++i) order.emplace_back(even_bits(i), even_bits(i >> 1));
 }
 
 void Tiling::pixels(std::size_t tile, std::vector<glm::ivec2>& result) const {
   const auto across = static_cast<std::size_t>(columns());
   const glm::ivec2 corner = side * glm::ivec2(tile % across, tile / across);
-  for (std::uint32_t i = 0; i < square(side); ++i) {
-    const glm::ivec2 p = corner + glm::ivec2(even_bits(i), even_bits(i >> 1));
-    if (p.x < size.x && p.y < size.y) result.push_back(p);
-  }
+  for (const glm::ivec2& offset : order)
+    if (const glm::ivec2 p = corner + offset; p.x < size.x && p.y < size.y) result.push_back(p);
 }
 
 Ray TileRenderer::ray(const glm::ivec2& pixel, const glm::dvec2& offset) const {

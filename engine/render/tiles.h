@@ -18,10 +18,12 @@ struct Tiling {
   /// `batch` rays per wave at most, but never tiles below 8x8 pixels, which waste coherence.
   Tiling(const glm::ivec2& size, int spp, std::size_t batch);
 
+  std::vector<glm::ivec2> order;  ///< the pixels of a tile, in Morton order: neighbours both ways follow each other
+
   int columns() const { return (size.x + side - 1) / side; }
   int rows() const { return (size.y + side - 1) / side; }
   std::size_t count() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
-  /// Appends the pixels of a tile in Morton order, so that rays which follow each other are neighbours both ways.
+  /// Appends the pixels of a tile.
   void pixels(std::size_t tile, std::vector<glm::ivec2>& result) const;
 };
 

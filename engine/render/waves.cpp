@@ -55,10 +55,11 @@ std::size_t Waves::Queue::wave_end(std::size_t first, std::size_t batch) const {
 
 std::span<Ray> Waves::primary(std::size_t count) {
   Queue& queue = levels_.front();
+  std::size_t known = queue.paths.size();  // every tile's first paths are alike
   queue.size = 0;
   queue.reserve(count);
   queue.size = count;
-  for (std::uint32_t i = 0; i < count; ++i) queue.paths[i] = {glm::vec3(1), i};
+  for (; known < count; ++known) queue.paths[known] = {glm::vec3(1), static_cast<std::uint32_t>(known)};
   return {queue.rays.data(), count};
 }
 
