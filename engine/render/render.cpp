@@ -17,8 +17,18 @@ namespace {
 
 /// Pixels of the largest picture: those of a square of 16,384.
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
+/// Waves of one depth wait for those of the next, so memory and stack grow with it.
+constexpr int most_depth = 1000;
 /// Tiles per thread at least, so that threads end together.
 constexpr std::size_t tiles_per_thread = 8;
+
+void check_materials(const Geometry& geometry, std::size_t count) {
+  for (std::size_t i = 0; i < geometry.objects.size(); ++i)
+    if (const Object& o = geometry.objects[i]; o.kind != Object::Kind::instance && o.material >= count)
+      throw Error("object " + std::to_string(i) + " has material " + std::to_string(o.material) + ", but there are " +
+                  std::to_string(count));
+  for (const auto& group : geometry.groups) check_materials(*group, count);
+}
 
 void check(const Scene& scene, const RenderOptions& options) {
   const glm::ivec2 size = scene.camera.size;
@@ -29,8 +39,10 @@ void check(const Scene& scene, const RenderOptions& options) {
     throw Error("cannot render an image of " + shape + " pixels: " + std::to_string(most_pixels) +
                 " in all is the most");
   if (options.depth < 0) throw Error("the depth is negative: give the number of bounces, 0 for none");
+  if (options.depth > most_depth) throw Error("the depth is above " + std::to_string(most_depth) + ": give less");
   if (options.spp < 1) throw Error("no samples per pixel: give at least 1");
   if (!scene.geometry) throw Error("the scene has no geometry to render");
+  check_materials(*scene.geometry, scene.materials.size());
   for (std::size_t i = 0; i < options.aovs.size(); ++i)
     if (std::count(options.aovs.begin(), options.aovs.end(), options.aovs[i]) > 1)
       throw Error("the output variable " + channel_names({&options.aovs[i], 1}).front() +

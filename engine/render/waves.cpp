@@ -115,11 +115,11 @@ void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& poin
   const glm::vec3 glass = point.path.weight * material.transmit * material.color;
   if (matters(glass)) {
     const double eta = index_ratio(material, glm::dot(d, surface.normal) < 0);
-    const auto through = refracted(d, point.normal, eta);
-    if (!through) mirror += glass;
     // An interpolated normal may bend the ray back to where it came from: then it passes straight.
-    else
+    if (const auto through = refracted(d, point.normal, eta))
       spawn(next, point, same_side(*through, d, surface.normal) ? *through : d, glass, rays_[refracted_ray]);
+    else
+      mirror += glass;
   }
   const glm::dvec3 back = reflected(d, point.normal);
   // The same below a mirror's own surface: then the flat normal reflects.
@@ -148,6 +148,10 @@ void Waves::shine(const Light& light) {
     const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
     if (seen != glm::vec3(0)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
   }
+  if (shadow_.size > 0) add_unshadowed();
+}
+
+void Waves::add_unshadowed() {
   rays_[shadow_ray] += shadow_.size;
   shadow_status_.resize(std::max(shadow_status_.size(), shadow_.size));
   gate_.any({shadow_.rays.data(), shadow_.size}, {shadow_status_.data(), shadow_.size}, RayClass::shadow);

@@ -77,6 +77,7 @@ class Waves {
   void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
              std::uint64_t& count);
   void shine(const Light& light);
+  void add_unshadowed();
 
   const Picture& picture_;
   TracerGate& gate_;

@@ -186,6 +186,7 @@ TEST(Render, RefusesImpossibleOrders) {
   const Scene good = lit_sphere();
   const auto tracer = make_tracer("embree", good.geometry);
   EXPECT_THROW(render(good, *tracer, {.depth = -1}), Error);
+  EXPECT_THROW(render(good, *tracer, {.depth = 1 << 30}), Error);
   EXPECT_THROW(render(good, *tracer, {.spp = 0}), Error);
   EXPECT_THROW(render(good, *tracer, {.aovs = {Aov::depth, Aov::depth}}), Error);
   for (const glm::ivec2 size : {glm::ivec2(0, 4), glm::ivec2(4, -1), glm::ivec2(100000, 100000)}) {
@@ -193,6 +194,16 @@ TEST(Render, RefusesImpossibleOrders) {
     bad.camera.size = size;
     EXPECT_THROW(render(bad, *tracer), Error);
   }
+}
+
+TEST(Render, RefusesMaterialsThatAreNotThere) {
+  GeometryBuilder group, builder;
+  group.add(unit_sphere, 1);
+  builder.add(group.build());
+  Scene scene = scene_of(builder, {}, one_ray({0, -5, 0}, {0, 0, 0}));
+  EXPECT_THROW(seen(scene), Error);
+  scene.materials.resize(2);
+  EXPECT_NO_THROW(seen(scene));
 }
 
 }  // namespace
