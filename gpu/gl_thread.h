@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <queue>
 #include <thread>
@@ -18,11 +19,12 @@ class GlThread {
   /// Runs `work` there, waits for it, and returns or throws what it did.
   template <class Work>
   std::invoke_result_t<Work> run(Work&& work) {
-    std::packaged_task<std::invoke_result_t<Work>()> task(std::forward<Work>(work));
-    auto result = task.get_future();
+    // Shared: the caller may be gone with the result while the thread is still on its way out of the task.
+    const auto task = std::make_shared<std::packaged_task<std::invoke_result_t<Work>()>>(std::forward<Work>(work));
+    auto result = task->get_future();
     {
       const std::lock_guard lock(mutex_);
-      queue_.push([&task] { task(); });
+      queue_.push([task] { (*task)(); });
     }
     ready_.notify_one();
     return result.get();
