@@ -49,7 +49,8 @@ bool RayLoader::is_ordinary(const Ray& ray) const {
 RayLoader::Placed RayLoader::place(const Ray& ray) const {
   Placed placed;
   const double length = absolute_sum(ray.direction);
-  if (!(length <= longest && length >= shortest)) placed.scale = std::ldexp(1.0, -std::ilogb(length));
+  if (!(length <= longest && length >= shortest))
+    placed.scale = std::ldexp(1.0, -std::ilogb(length)), placed.rate = 1 / placed.scale;
   double enter = ray.tmin, leave = ray.tmax;
   for (int axis = 0; axis < 3; ++axis)
     clip(box_.lower[axis], box_.upper[axis], ray.origin[axis], ray.direction[axis], enter, leave);
@@ -70,7 +71,7 @@ void RayLoader::load_lane(const Ray& ray, const Placed& placed, int lanes, int l
   c.nearest[lane] = next_above(ray.tmax);
   c.object[lane] = 0;
   c.shift[lane] = placed.shift;
-  c.rate[lane] = 1 / placed.scale;
+  c.rate[lane] = placed.rate;
   c.scale[lane] = placed.scale;
   const glm::dvec3 origin = placed.shift == 0 ? ray.origin : ray.at(placed.shift);
   float* const field = soa + lane;
@@ -78,8 +79,8 @@ void RayLoader::load_lane(const Ray& ray, const Placed& placed, int lanes, int l
     field[i * lanes] = static_cast<float>(origin[i]);
     field[(4 + i) * lanes] = static_cast<float>(ray.direction[i] * placed.scale);
   }
-  field[3 * lanes] = std::max(0.f, float_below((ray.tmin - placed.shift) / placed.scale));
-  field[8 * lanes] = float_above((ray.tmax - placed.shift) / placed.scale);
+  field[3 * lanes] = std::max(0.f, float_below((ray.tmin - placed.shift) * placed.rate));
+  field[8 * lanes] = float_above((ray.tmax - placed.shift) * placed.rate);
 }
 
 template <class EmbreeRays>

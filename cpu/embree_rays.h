@@ -24,7 +24,7 @@ class RayLoader {
 
  private:
   struct Placed {
-    double shift = 0, scale = 1;
+    double shift = 0, scale = 1, rate = 1;  // as in QuadricContext
     bool traced = true;
   };
   bool is_ordinary(const Ray& ray) const;

@@ -76,8 +76,11 @@ bool count_bytes(void* total, ssize_t bytes, bool) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision)
-    : geometry_(std::move(geometry)), precision_(precision), finite_bounds_(finite_part(*geometry_)) {
+EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, bool calls_filters)
+    : geometry_(std::move(geometry)),
+      precision_(precision),
+      calls_filters_(calls_filters),
+      finite_bounds_(finite_part(*geometry_)) {
   if (!finite_bounds_.empty() && !(finite_bounds_.extent() < embree_range))
     throw Error("the scene reaches beyond 1.8e18, which Embree's single precision cannot hold: scale it down");
   device_ = rtcNewDevice(nullptr);
@@ -126,9 +129,9 @@ std::size_t EmbreeScene::bytes() const {
 void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) {
   level.geometry = &geometry;
   level.scene = rtcNewScene(device_);
-  rtcSetSceneFlags(level.scene,
-                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
-                                              (precision_ == Precision::fast ? 0 : RTC_SCENE_FLAG_ROBUST)));
+  const int robust = precision_ == Precision::fast ? 0 : RTC_SCENE_FLAG_ROBUST;
+  const int filters = calls_filters_ ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0;
+  rtcSetSceneFlags(level.scene, static_cast<RTCSceneFlags>(robust | filters));
   if (&level == &top_) attach_instances();
   attach_triangles(level);
   attach_quadrics(level, padding);
@@ -154,6 +157,8 @@ void EmbreeScene::attach_triangles(Level& level) {
   rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, g.triangles.data(), 0,
                              sizeof(glm::uvec3), g.triangles.size());
   level.triangles_id = attach(level.scene, mesh);
+  // Objects come in order, so that equal ends mean one object.
+  if (g.triangle_object.front() == g.triangle_object.back()) level.only_mesh = g.triangle_object.front();
 }
 
 void EmbreeScene::attach_quadrics(Level& level, double padding) {

@@ -16,7 +16,8 @@ class EmbreeScene {
   static constexpr double near_extents = 8;
 
   /// Throws Error when Embree fails, or when the geometry's finite parts lie beyond the range of its single precision.
-  EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision);
+  /// All-hits queries need a scene that calls filters; other queries would pay for that at every hit.
+  EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, bool calls_filters = false);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -38,8 +39,14 @@ class EmbreeScene {
     const Geometry* geometry = nullptr;
     unsigned triangles_id = RTC_INVALID_GEOMETRY_ID;
     unsigned first_bucket = 0;
+    std::uint32_t only_mesh = no_id;  ///< the object of all triangles, if it is one: spares a look-up, often uncached
     std::vector<std::unique_ptr<QuadricBucket>> buckets;
   };
+
+  /// The object that a triangle of a level is part of.
+  static std::uint32_t object_of(const Level& level, std::uint32_t triangle) {
+    return level.only_mesh != no_id ? level.only_mesh : level.geometry->triangle_object[triangle];
+  }
 
   /// The level that a hit with this instID lies in.
   const Level& level(unsigned inst) const {
@@ -54,6 +61,7 @@ class EmbreeScene {
 
   std::shared_ptr<const Geometry> geometry_;
   Precision precision_;
+  bool calls_filters_;
   RTCDevice device_ = nullptr;
   Level top_;
   std::vector<Level> groups_;

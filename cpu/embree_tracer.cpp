@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <glm/geometric.hpp>
+#include <mutex>
 #include <tuple>
 #include <type_traits>
 
@@ -36,26 +37,37 @@ void forget_hits(float* soa, int lanes) {
   std::fill_n(soa + 18 * lanes, 2 * lanes, std::bit_cast<float>(RTC_INVALID_GEOMETRY_ID));
 }
 
+bool any_hit(const float* soa, int lanes) {
+  const float* geom = soa + 18 * lanes;
+  return std::any_of(geom, geom + lanes,
+                     [](float id) { return std::bit_cast<unsigned>(id) != RTC_INVALID_GEOMETRY_ID; });
+}
+
 /// Normals of triangles to unit length, all lanes at once; lanes without a hit hold anything.
 void normalise(float* soa, int lanes) {
+  constexpr float least = std::numeric_limits<float>::min();
   float *x = soa + 12 * lanes, *y = x + lanes, *z = y + lanes;
   for (int i = 0; i < lanes; ++i) {
     const float largest = std::max(std::max(std::abs(x[i]), std::abs(y[i])), std::abs(z[i]));
-    const float a = x[i] / largest, b = y[i] / largest, c = z[i] / largest;  // squares of small ones would vanish
-    const float length = std::sqrt((a * a + b * b) + c * c);
-    x[i] = a / length, y[i] = b / length, z[i] = c / length;
+    const float scale = largest > 1e-15f && largest < 1e15f ? 1 : 1 / std::max(largest, least);  // squares would vanish
+    const float a = x[i] * scale, b = y[i] * scale, c = z[i] * scale;
+    const float per_length = 1 / std::sqrt((a * a + b * b) + c * c);
+    x[i] = a * per_length, y[i] = b * per_length, z[i] = c * per_length;
   }
 }
 
 class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(std::shared_ptr<const Geometry> geometry, Precision precision)
-      : precision_(precision), scene_(std::move(geometry), precision), loader_(scene_, precision) {}
+      : precision_(precision),
+        geometry_(std::move(geometry)),
+        scene_(geometry_, precision),
+        loader_(scene_, precision) {}
 
   std::string_view name() const override { return "embree"; }
   Precision precision() const override { return precision_; }
   double build_seconds() const override { return scene_.build_seconds(); }
-  std::size_t bytes() const override { return scene_.bytes(); }
+  std::size_t bytes() const override { return scene_.bytes() + (filtering_ ? filtering_->bytes() : 0); }
   Limits limits() const override {
     return {.triangle_roundoff = 0x1p-24, .quadric_roundoff = precision_ == Precision::fast ? 0x1p-24 : 0x1p-53};
   }
@@ -79,7 +91,10 @@ class EmbreeTracer final : public Tracer {
                std::uint32_t primitive) const;
 
   Precision precision_;
+  std::shared_ptr<const Geometry> geometry_;
   EmbreeScene scene_;
+  std::unique_ptr<EmbreeScene> filtering_;  ///< the same with the same ids, made by the first all-hits query
+  std::once_flag filtering_once_;
   RayLoader loader_;
 };
 
@@ -128,7 +143,7 @@ void EmbreeTracer::set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& le
 
 void EmbreeTracer::triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const {
   const Geometry& g = *level.geometry;
-  const std::uint32_t object = g.triangle_object[answer.prim];
+  const std::uint32_t object = EmbreeScene::object_of(level, answer.prim);
   hit.t = t;
   hit.error = 0;
   hit.u = answer.u, hit.v = answer.v;
@@ -174,7 +189,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
       if constexpr (lanes == 16) rtcIntersect16(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
       if constexpr (lanes == 8) rtcIntersect8(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
       if constexpr (lanes == 1) rtcIntersect1(scene_.scene(), &packet.context.embree, &packet.rays);
-      normalise(soa, lanes);
+      if (any_hit(soa, lanes)) normalise(soa, lanes);
     }
     for (int i = 0; i < static_cast<int>(now.size()); ++i) {
       const Answer a = answer(soa, lanes, i);
@@ -254,7 +269,7 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
   packet.context.collector = &collector;
   packet.context.embree.filter = collect_triangle;
   packet.rays.hit.geomID = packet.rays.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  if (loader_.load({&ray, 1}, 1, packet)) rtcIntersect1(scene_.scene(), &packet.context.embree, &packet.rays);
+  if (loader_.load({&ray, 1}, 1, packet)) rtcIntersect1(filtering_->scene(), &packet.context.embree, &packet.rays);
   std::vector<Hit> hits;
   for (const auto& e : collector.entries) {
     const EmbreeScene::Level& level = scene_.level(e.inst);
@@ -273,6 +288,7 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
 }
 
 HitLists EmbreeTracer::all(std::span<const Ray> rays) {
+  std::call_once(filtering_once_, [&] { filtering_ = std::make_unique<EmbreeScene>(geometry_, precision_, true); });
   std::vector<std::vector<Hit>> lists(rays.size());
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) lists[i] = all(rays[i]);
