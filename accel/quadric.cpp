@@ -101,7 +101,8 @@ Box bounds(const Quadric& q, const GeneralForm* form) {
   switch (q.type) {
     case QuadricType::sphere: return sphere_bounds(q, map);
     case QuadricType::general: return transformed(form->box, map);
-    case QuadricType::saddle: return transformed({{-1, -1, std::max(q.zmin, -1.0)}, {1, 1, std::min(q.zmax, 1.0)}}, map);
+    case QuadricType::saddle:
+      return transformed({{-1, -1, std::max(q.zmin, -1.0)}, {1, 1, std::min(q.zmax, 1.0)}}, map);
     case QuadricType::plane: return transformed({{-infinity, -infinity, 0}, {infinity, infinity, 0}}, map);
     default: break;
   }

@@ -11,8 +11,8 @@ namespace rayengine {
 inline constexpr std::uint32_t no_id = 0xFFFFFFFFu;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A ray: origin + t * direction for tmin < t <= tmax. The direction need not have unit length; t counts in its lengths.
-/// The memory layout is that of a row of an (N, 8) float64 array: ox oy oz tmin dx dy dz tmax.
+/// A ray: origin + t * direction for tmin < t <= tmax. The direction need not have unit length; t counts in its
+/// lengths. The memory layout is that of a row of an (N, 8) float64 array: ox oy oz tmin dx dy dz tmax.
 struct Ray {
   glm::dvec3 origin{0};
   double tmin = 0;
@@ -34,12 +34,12 @@ enum Status : std::uint32_t {
 
 /// The answer to a ray query. On a miss t is infinite and both ids are no_id.
 struct Hit {
-  double t = infinity;             ///< in units of the ray's direction
-  double error = 0;                ///< bound on |t - exact t|; 0 where the precision proves none
-  std::uint32_t object = no_id;    ///< numbered from 0 in file order
-  std::uint32_t primitive = no_id; ///< triangle of a mesh; 0 side, 1 lower cap, 2 upper cap of a quadric
-  float u = 0, v = 0;              ///< barycentrics of the triangle's second and third vertex; 0 on quadrics
-  glm::vec3 normal{0};             ///< unit geometric normal: outward on quadrics, counter-clockwise on triangles
+  double t = infinity;              ///< in units of the ray's direction
+  double error = 0;                 ///< bound on |t - exact t|; 0 where the precision proves none
+  std::uint32_t object = no_id;     ///< numbered from 0 in file order
+  std::uint32_t primitive = no_id;  ///< triangle of a mesh; 0 side, 1 lower cap, 2 upper cap of a quadric
+  float u = 0, v = 0;               ///< barycentrics of the triangle's second and third vertex; 0 on quadrics
+  glm::vec3 normal{0};              ///< unit geometric normal: outward on quadrics, counter-clockwise on triangles
   std::uint32_t status = status_miss;
 
   bool hit() const { return status & status_hit; }

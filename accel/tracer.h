@@ -24,10 +24,10 @@ std::optional<Precision> parse_precision(std::string_view name);
 
 /// What a caller must know to feed a tracer well.
 struct Limits {
-  bool concurrent = true;           ///< queries may come from several threads at once
-  std::size_t batch = 4096;         ///< rays per query that use the device well
-  double triangle_roundoff = 0;     ///< unit round-off of the arithmetic that tests triangles (2^-24, 2^-53, 0 if exact)
-  double quadric_roundoff = 0;      ///< the same for quadrics
+  bool concurrent = true;        ///< queries may come from several threads at once
+  std::size_t batch = 4096;      ///< rays per query that use the device well
+  double triangle_roundoff = 0;  ///< unit round-off of the arithmetic that tests triangles (2^-24, 2^-53, 0 if exact)
+  double quadric_roundoff = 0;   ///< the same for quadrics
 };
 
 /// Anything that answers ray queries on one Geometry, fixed when it was made.

@@ -22,7 +22,8 @@ struct Affine {
 /// First `b`, then `a`.
 Affine operator*(const Affine& a, const Affine& b);
 
-/// The inverse of an affine map, in the order that keeps accuracy far from the world's origin: first subtract, then turn.
+/// The inverse of an affine map, in the order that keeps accuracy far from the world's origin: first subtract, then
+/// turn.
 struct WorldToObject {
   glm::dmat3 linear{1};
   glm::dvec3 origin{0};

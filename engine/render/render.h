@@ -24,8 +24,8 @@ struct RenderOptions {
   int spp = 1;    ///< samples a pixel; 1 is its centre
   Shading shading = Shading::full;
   std::vector<Aov> aovs;
-  int threads = 0;                              ///< 0: as many as the machine has
-  std::function<void(double share)> progress;   ///< called now and then, from any thread, with the share done
+  int threads = 0;                             ///< 0: as many as the machine has
+  std::function<void(double share)> progress;  ///< called now and then, from any thread, with the share done
 };
 
 struct RenderStats {
@@ -36,17 +36,19 @@ struct RenderStats {
   std::uint64_t invalid_rays = 0;
 };
 
-/// Channels R, G, B, A (linear), then those of the AOVs in the order asked for: Z; N.X N.Y N.Z; object; primitive; P.X P.Y P.Z; error.
+/// Channels R, G, B, A (linear), then those of the AOVs in the order asked for: Z; N.X N.Y N.Z; object; primitive; P.X
+/// P.Y P.Z; error.
 struct RenderResult {
   Image image;
   RenderStats stats;
 };
 
-/// Renders scene.camera.size pixels in waves of rays through `tracer`, which must trace scene.geometry. The picture does
-/// not depend on the number of threads.
+/// Renders scene.camera.size pixels in waves of rays through `tracer`, which must trace scene.geometry. The picture
+/// does not depend on the number of threads.
 RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& options = {});
 
-/// The primary ray through pixel coordinates (x, y), in pixels from the upper left corner; its direction has unit length.
+/// The primary ray through pixel coordinates (x, y), in pixels from the upper left corner; its direction has unit
+/// length.
 Ray camera_ray(const Camera& camera, double x, double y);
 
 }  // namespace rayengine

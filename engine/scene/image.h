@@ -14,7 +14,9 @@ struct Image {
 
   Image() = default;
   Image(int width, int height, std::vector<std::string> names)
-      : width(width), height(height), channels(std::move(names)),
+      : width(width),
+        height(height),
+        channels(std::move(names)),
         pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels.size()) {}
 
   float* pixel(int x, int y) { return pixels.data() + offset(x, y); }
@@ -22,7 +24,8 @@ struct Image {
 
  private:
   std::size_t offset(int x, int y) const {
-    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * channels.size();
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
+           channels.size();
   }
 };
 

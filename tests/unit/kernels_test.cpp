@@ -25,7 +25,8 @@ TEST(Kernels, LanesGiveTheBitsOfScalars) {
     Vec3<double> p1;
     double s1, a1, b1, c1, near1, far1;
     rayengine::kernels::approach(Vec3<double>{o.x[i], o.y[i], o.z[i]}, Vec3<double>{d.x[i], d.y[i], d.z[i]}, p1, s1);
-    rayengine::kernels::diagonal_coefficients(1., 1., -1., 0., 0., p1, Vec3<double>{d.x[i], d.y[i], d.z[i]}, a1, b1, c1);
+    rayengine::kernels::diagonal_coefficients(1., 1., -1., 0., 0., p1, Vec3<double>{d.x[i], d.y[i], d.z[i]}, a1, b1,
+                                              c1);
     rayengine::kernels::roots(a1, b1, c1, near1, far1);
     EXPECT_EQ(near[i], near1);
     EXPECT_EQ(far[i], far1);
