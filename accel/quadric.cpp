@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "accel/unit_matrices.h"
+
 namespace rayengine {
 namespace {
 
@@ -80,21 +82,7 @@ std::optional<QuadricType> parse_quadric_type(std::string_view name) {
   return static_cast<QuadricType>(found - type_names.begin());
 }
 
-const QuadricMatrix& unit_matrix(QuadricType type) {
-  static constexpr std::array<QuadricMatrix, quadric_type_count> matrices{{
-      {1, 0, 0, 0, 1, 0, 0, 1, 0, -1},     // sphere
-      {1, 0, 0, 0, 1, 0, 0, 0, 0, -1},     // cylinder
-      {1, 0, 0, 0, 1, 0, 0, -1, 0, 0},     // cone
-      {1, 0, 0, 0, 1, 0, 0, 0, -0.5, 0},   // paraboloid
-      {1, 0, 0, 0, 1, 0, 0, -1, 0, -1},    // hyperboloid1
-      {1, 0, 0, 0, 1, 0, 0, -1, 0, 1},     // hyperboloid2, signed so that the inside is negative
-      {1, 0, 0, 0, -1, 0, 0, 0, -0.5, 0},  // saddle
-      {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0},    // plane
-      {0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0},    // disk
-      {},                                  // general
-  }};
-  return matrices[static_cast<std::size_t>(type)];
-}
+const QuadricMatrix& unit_matrix(QuadricType type) { return unit_matrices[static_cast<std::size_t>(type)]; }
 
 Box bounds(const Quadric& q, const GeneralForm* form) {
   const Affine map = object_to_world(q.to_object);

@@ -10,7 +10,6 @@ namespace {
 
 // Single precision directions outside of this would overflow or lose bits when they are multiplied.
 constexpr double longest = 1e15, shortest = 1e-15;
-constexpr double embree_range = 1.8e18;
 
 double absolute_sum(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
@@ -30,7 +29,7 @@ void clip(double lo, double hi, double o, double d, double& enter, double& leave
 RayLoader::RayLoader(const EmbreeScene& scene, Precision precision)
     : scene_(scene),
       load_packet_(packet_loader(best_isa())),
-      ordinary_{embree_range, shortest, longest},
+      ordinary_{EmbreeScene::range, shortest, longest},
       box_(scene.finite_bounds()),
       moves_(precision != Precision::fast && !box_.empty()),
       unbounded_(!scene.geometry().bounds.finite()) {
@@ -59,7 +58,7 @@ RayLoader::Placed RayLoader::place(const Ray& ray) const {
     placed.shift = enter;
   else if (std::isfinite(ray.tmin))
     placed.shift = std::min(ray.tmin, 0.0);
-  placed.traced = (!misses || unbounded_) && absolute_sum(ray.at(placed.shift)) < embree_range;
+  placed.traced = (!misses || unbounded_) && absolute_sum(ray.at(placed.shift)) < EmbreeScene::range;
   return placed;
 }
 

@@ -10,16 +10,15 @@
 namespace rayengine {
 namespace {
 
-// Embree takes coordinates up to this; beyond, its own checks refuse them.
-constexpr double embree_range = 1.8e18;
-
 /// Rays start within near_extents of the scene (see RayLoader) and are rounded to float there: their origins move by
 /// near_extents 2^-24 of the extent, and on the way of at most some 20 extents their rounded directions lead them
 /// astray by 10 2^-24 more. Boxes padded by this hold what the exact rays hit.
 constexpr double padding_per_extent = 0x1p-19;
 
 /// Infinite boxes become the largest that Embree takes.
-float clamped(float a) { return std::clamp(a, -static_cast<float>(embree_range), static_cast<float>(embree_range)); }
+float clamped(float a) {
+  return std::clamp(a, -static_cast<float>(EmbreeScene::range), static_cast<float>(EmbreeScene::range));
+}
 
 void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& bucket = *static_cast<const QuadricBucket*>(args->geometryUserPtr);
@@ -81,7 +80,7 @@ EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision pre
       precision_(precision),
       calls_filters_(calls_filters),
       finite_bounds_(finite_part(*geometry_)) {
-  if (!finite_bounds_.empty() && !(finite_bounds_.extent() < embree_range))
+  if (!finite_bounds_.empty() && !(finite_bounds_.extent() < EmbreeScene::range))
     throw Error("the scene reaches beyond 1.8e18, which Embree's single precision cannot hold: scale it down");
   device_ = rtcNewDevice(nullptr);
   if (!device_) throw Error("Embree found no device to run on");

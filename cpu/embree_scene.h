@@ -12,6 +12,8 @@ namespace rayengine {
 /// An Embree scene of one Geometry, the scenes of its groups, and the tables that lead from Embree's ids back to ours.
 class EmbreeScene {
  public:
+  /// Embree takes coordinates up to this; beyond, its own checks refuse them.
+  static constexpr double range = 1.8e18;
   /// Origins further out than so many times the scene's extent are moved before they are rounded to float.
   static constexpr double near_extents = 8;
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "accel/unit_matrices.h"
 #include "cpu/isa/lanes.inl"
 #include "cpu/quadric_bucket.h"
 
@@ -75,16 +76,8 @@ struct Form {
 
 template <QuadricType type>
 constexpr Form form() {
-  switch (type) {
-    case QuadricType::sphere: return {1, 1, 1, 0, -1};
-    case QuadricType::cylinder: return {1, 1, 0, 0, -1};
-    case QuadricType::cone: return {1, 1, -1, 0, 0};
-    case QuadricType::paraboloid: return {1, 1, 0, -0.5, 0};
-    case QuadricType::hyperboloid1: return {1, 1, -1, 0, -1};
-    case QuadricType::hyperboloid2: return {1, 1, -1, 0, 1};
-    case QuadricType::saddle: return {1, -1, 0, -0.5, 0};
-    default: return {0, 0, 0, 0.5, 0};
-  }
+  constexpr QuadricMatrix m = unit_matrices[static_cast<std::size_t>(type)];
+  return {m[0], m[4], m[7], m[8], m[9]};
 }
 
 /// Keeps the nearest root within the interval. Strictly nearer wins, so that of equal ones the lowest part stays.
