@@ -64,7 +64,7 @@ const char* error_name(GLenum error) {
     case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
     case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
     case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY (use fewer rays a batch or a smaller scene)";
+    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
     case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST";
     default: return "an unknown error";
   }
@@ -139,7 +139,7 @@ void Context::check_errors(const char* during) {
   if (error == GL_NO_ERROR && reported_.empty()) return;
   const std::string detail = reported_.empty() ? "" : ": " + std::exchange(reported_, {});
   throw Error(std::string("the GPU (") + info_.renderer + ") failed during " + during + ": " + error_name(error) +
-              detail);
+              detail + "; use --tracer embree");
 }
 
 std::vector<GpuInfo> gpu_devices() {

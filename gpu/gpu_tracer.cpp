@@ -97,6 +97,9 @@ class GpuTracer : public Tracer {
   /// The traveller's best hit, worked out in double as far as the precision goes; nothing when that shows that the ray
   /// only runs along the surface, or meets it outside of its interval.
   std::optional<Hit> found(const Traveller& t, const Ray& ray) const {
+    if (t.best_rank >= geometry_->primitive_count)
+      throw Error("the GPU answered with primitive " + std::to_string(t.best_rank) + " of " +
+                  std::to_string(geometry_->primitive_count) + "; use --tracer embree");
     const Ids ids = ids_of_rank(*geometry_, t.best_rank);
     Hit hit;
     hit.t = t.frame.to_world(t.best_t);

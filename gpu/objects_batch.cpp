@@ -4,13 +4,10 @@
 #include <glm/packing.hpp>
 #include <glm/vec4.hpp>
 
-#include "accel/tracer.h"
 #include "gpu/kernel_program.h"
 
 namespace rayengine {
 namespace {
-
-constexpr std::uint64_t patience = 60'000'000'000;  // nanoseconds; there is a pass an object
 
 /// By texture unit: origins, directions, (treelet lists, which no one reads), entries; or all packed into one.
 std::vector<Texture> make_inputs(GLsizei side, bool half) {
@@ -93,13 +90,13 @@ void ObjectsBatch::read(Traveller& t, std::size_t i) const {
   t.normal = glm::vec3(x.y, y.y, z.y);
 }
 
-void ObjectsBatch::read_back(std::span<Traveller> travellers) {
+void ObjectsBatch::read_back(std::span<Traveller> travellers, Context& context) {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[output_].id());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_.object.id());
   glReadPixels(0, 0, side_, rows_, half_ ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-  if (!Fence().reached(patience)) throw Error("the GPU did not answer within a minute; use --tracer embree");
+  await(Fence(), context);
   for (std::size_t i = 0; i < travellers.size(); ++i) read(travellers[i], i);
 }
 

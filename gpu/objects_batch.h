@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gpu/await.h"
 #include "gpu/device_engine.h"
 #include "gpu/objects.h"
 
@@ -22,8 +23,8 @@ class ObjectsBatch {
   void upload(std::span<const Traveller> travellers);
   /// Makes the stream's last output the input of the next pass.
   void turn();
-  /// Waits for the answers and enters them.
-  void read_back(std::span<Traveller> travellers);
+  /// Waits for the answers and enters them. Throws Error when there is no hope of them, or they mean nothing.
+  void read_back(std::span<Traveller> travellers, Context& context);
 
  private:
   void write(const Traveller& traveller, std::size_t i);

@@ -82,7 +82,7 @@ void ObjectsEngine::run(std::span<Traveller> travellers) {
     glUniform2ui(object_range_location, pass.first, pass.count);
     draw_everywhere();
   }
-  batch_->read_back(travellers);
+  batch_->read_back(travellers, context_);
 }
 
 void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
@@ -101,7 +101,6 @@ void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& 
       return false;
     });
   }
-  context_.check_errors("tracing");
 }
 
 }  // namespace rayengine

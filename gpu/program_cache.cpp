@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -70,7 +71,9 @@ void ProgramCache::store(const ProgramObject& program) const {
   glGetProgramBinary(program.id(), size, nullptr, &format, binary.data());
   std::error_code ignored;
   fs::create_directories(fs::path(path_).parent_path(), ignored);
-  const std::string unfinished = path_ + "." + std::to_string(getpid());  // others may be reading
+  // Others may be reading, and other threads writing the same.
+  static std::atomic<unsigned> stored = 0;
+  const std::string unfinished = path_ + "." + std::to_string(getpid()) + "." + std::to_string(stored++);
   std::ofstream file(unfinished, std::ios::binary);
   file.write(reinterpret_cast<const char*>(&format), sizeof format).write(binary.data(), size);
   file.close();

@@ -97,6 +97,7 @@ std::vector<std::array<std::uint32_t, 2>> ranges_of(const Geometry& g, const Tre
 SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const GpuInfo& gpu) {
   require(3 * treelets.triangles.size(), "triangles", gpu);
   require(4 * treelets.quadrics.size(), "quadrics", gpu);
+  require(4 * scene.geometry->forms.size(), "general forms", gpu);
   std::vector<Texel> triangles, quadrics, forms;
   triangles.reserve(3 * treelets.triangles.size());
   quadrics.reserve(4 * treelets.quadrics.size());
@@ -106,6 +107,7 @@ SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const Gpu
   SceneTextures result;
   result.types = types_in(*scene.geometry);
   const auto ranges = ranges_of(*scene.geometry, treelets, result.types);
+  require(ranges.size(), "treelets", gpu);
   result.triangles = texture_of(GL_RGBA32UI, triangles);
   result.quadrics = texture_of(GL_RGBA32UI, quadrics);
   result.forms = texture_of(GL_RGBA32UI, forms);

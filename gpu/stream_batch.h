@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "gpu/await.h"
 #include "gpu/objects.h"
 
 namespace rayengine {
@@ -44,7 +45,8 @@ class StreamBatch {
   void draw_states() const { glBindFramebuffer(GL_FRAMEBUFFER, states_.id()); }
   void draw_hits() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_.id()); }
   void read_back();
-  bool finished(std::uint64_t nanoseconds) const { return fence_->reached(nanoseconds); }
+  /// Waits for the answers. Throws Error when there is no hope of them, or they mean nothing.
+  void await(Context& context) const { rayengine::await(*fence_, context); }
 
  private:
   std::size_t section() const { return capacity() * sizeof(glm::vec4); }

@@ -15,8 +15,7 @@
 namespace rayengine {
 namespace {
 
-constexpr std::size_t block = 256;                  // rays that are walked together
-constexpr std::uint64_t patience = 10'000'000'000;  // nanoseconds until a batch counts as lost
+constexpr std::size_t block = 256;  // rays that are walked together
 
 /// Where single precision is tested in software, tests are dear and lists cheap.
 std::uint32_t treelet_size(const StreamOptions& options, const GpuInfo& gpu) {
@@ -169,8 +168,7 @@ bool StreamEngine::arrived(StreamTraveller& t, std::span<const Ray> rays, Stream
 }
 
 void StreamEngine::collect(Slot& slot, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
-  if (slot.sent > 0 && !slot.batch.finished(patience))
-    throw Error("the GPU did not answer within 10 seconds; use --tracer embree");
+  if (slot.sent > 0) slot.batch.await(context_);
   std::vector<char> done(slot.travellers.size());
   for_blocks(done.size(), [&](std::size_t i) {
     StreamTraveller& t = slot.travellers[slot.order[i]];
@@ -210,7 +208,6 @@ void StreamEngine::trace(std::span<const Ray> rays, StreamQuery query, const Arr
       free.push_back(&slot);
     }
   }
-  context_.check_errors("tracing");
 }
 
 }  // namespace rayengine
