@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include "accel/tracer.h"
 #include "engine/load/atomic_file.h"
+#include "engine/load/memory_file.h"
 
 namespace rayengine {
 namespace {
@@ -112,15 +115,52 @@ bool write_pixels(OIIO::ImageOutput& output, const Image& image, const Selection
   return output.write_image(OIIO::TypeFloat, image.pixels.data(), stride);
 }
 
-// Images are made in memory first: what libraries do when the disk is full is between silence (libpng) and ending the
-// process (libjpeg). The few formats that OpenImageIO cannot write into memory are refused.
+/// The sides that a format, or the library behind it, really holds; beyond them some write damaged files, and libjpeg
+/// ends the process. Others take all that a picture of ours can have.
+struct Sides {
+  std::string_view format;
+  int least, most;
+};
+constexpr Sides limited[] = {{"gif", 1, 65535},   {"heif", 1, 65535},      {"ico", 1, 256},   {"iff", 1, 65535},
+                             {"jpeg", 1, 65500},  {"jpeg2000", 32, 65536}, {"rla", 1, 65535}, {"sgi", 1, 65535},
+                             {"targa", 1, 65535}, {"webp", 1, 16383}};
+
+/// What OpenImageIO writes too, but is no picture: nothing at all, text for the terminal, depth alone.
+constexpr std::string_view no_pictures[] = {"null", "term", "zfile"};
+
 std::unique_ptr<OIIO::ImageOutput> make_output(const std::filesystem::path& file) {
   auto output = OIIO::ImageOutput::create(file.string());
-  if (!output || !output->supports("ioproxy")) {
+  if (!output || std::ranges::find(no_pictures, output->format_name()) != std::end(no_pictures)) {
     OIIO::geterror();  // forgets it, since OpenImageIO would print it at exit
     throw Error(file.string() + ": its extension names no image format that can be written; use .png or .exr");
   }
   return output;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw Error(file.string() + ": the image does not fit this format (" + why + "); use .exr");
+}
+
+void check_sides(const OIIO::ImageOutput& output, const std::filesystem::path& file, int width, int height) {
+  const auto limits = std::ranges::find(limited, std::string_view(output.format_name()), &Sides::format);
+  if (limits == std::end(limited)) return;
+  const auto [shorter, longer] = std::minmax(width, height);
+  if (shorter < limits->least || longer > limits->most)
+    refuse(file, "it takes " + std::to_string(limits->least) + " to " + std::to_string(limits->most) +
+                     " pixels a side, not " + std::to_string(width) + "x" + std::to_string(height));
+}
+
+/// The bytes of the file. They are made in memory first: what libraries do when the disk is full is between silence
+/// (libpng) and ending the process (libjpeg). Formats that must have a file get one in memory.
+std::vector<unsigned char> encode(OIIO::ImageOutput& output, const std::filesystem::path& file, const Image& image,
+                                  const Selection& selection) {
+  OIIO::Filesystem::IOVecOutput memory;
+  std::optional<MemoryFile> memory_file;
+  if (!output.set_ioproxy(&memory)) memory_file.emplace(2 * selection.spec.image_bytes() + 65536);
+  const bool written = output.open(memory_file ? memory_file->name() : file.string(), selection.spec) &&
+                       write_pixels(output, image, selection) && output.close();
+  if (!written) refuse(file, first_line(output.geterror()));
+  return memory_file ? memory_file->content() : memory.buffer();
 }
 
 }  // namespace
@@ -131,8 +171,9 @@ Image read_image(const std::filesystem::path& file) {
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are in the file
   const auto input = OIIO::ImageInput::open(file.string(), &wishes);
   if (!input) throw Error(file.string() + ": cannot be read as an image (" + first_line(OIIO::geterror()) + ")");
-  const OIIO::ImageSpec& spec = input->spec();
+  OIIO::ImageSpec spec = input->spec();
   check_size(spec, file.string());
+  if (spec.channelnames.size() != static_cast<std::size_t>(spec.nchannels)) spec.default_channel_names();  // FITS
   Image image(spec.width, spec.height, spec.channelnames);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     throw Error(file.string() + ": is damaged (" + first_line(input->geterror()) + "); is it complete?");
@@ -145,20 +186,20 @@ void check_writable(const std::filesystem::path& file) {
   make_output(file);
 }
 
+void check_holds(const std::filesystem::path& file, int width, int height) {
+  check_sides(*make_output(file), file, width, height);
+}
+
 void write_image(const std::filesystem::path& file, const Image& image, Encoding encoding) {
   if (image.width < 1 || image.height < 1 || image.channels.empty())
     throw Error(file.string() + ": an image without pixels cannot be written");
   const auto output = make_output(file);
+  check_sides(*output, file, image.width, image.height);
   const Selection selection = select(image, *output, encoding);
   if (selection.spec.nchannels == 0) throw Error(file.string() + ": the image has no colour; write it as .exr");
-  OIIO::Filesystem::IOVecOutput memory;
-  const bool written = output->set_ioproxy(&memory) && output->open(file.string(), selection.spec) &&
-                       write_pixels(*output, image, selection) && output->close();
-  if (!written)
-    throw Error(file.string() + ": the image does not fit this format (" + first_line(output->geterror()) +
-                "); use .exr");
+  const std::vector<unsigned char> bytes = encode(*output, file, image, selection);
   AtomicFile target(file);
-  target.write(memory.buffer().data(), memory.buffer().size());
+  target.write(bytes.data(), bytes.size());
   target.commit();
 }
 

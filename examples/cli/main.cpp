@@ -23,7 +23,9 @@ void interrupted(int signal) {
 
 void catch_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, interrupted);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away must not cost us the files still to be written
+  // A reader that goes away must not cost us the files still to be written; a limit on files is to be told as a full
+  // disk.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 /// Messages stay on one line, whatever they quote.

@@ -141,6 +141,7 @@ int run(Options& o) {
   Scene& scene = loaded.scene;
   if (o.size) scene.camera.size = *o.size;
   check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());
+  check_holds(o.output, scene.camera.size.x, scene.camera.size.y);
   const auto tracer = make_tracer(o.tracer, scene.geometry, {o.precision, o.common.threads, o.common.gpu});
   const RenderResult result = render_with_progress(o, scene, *tracer);
   Seconds seconds{loaded.seconds, tracer->build_seconds(), result.stats.seconds};

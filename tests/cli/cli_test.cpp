@@ -120,6 +120,7 @@ TEST_F(CliFailure, WorkThatCannotBeDoneExitsWith1) {
 TEST_F(CliFailure, UnwritableOutputIsFoundBeforeTheWork) {
   expect_failure(1, "render none.nff -o none/a.png", "none/a.png");
   expect_failure(1, "render none.nff -o a.frob", "a.frob");
+  expect_failure(1, "render scene.nff -o a.ico --size 257x16", "a.ico");
   expect_failure(1, "render none.nff -o a.png --stats none/a.json", "none/a.json");
   expect_failure(1, "trace none.nff --rays none.npy -o none/hits.npy", "none/hits.npy");
   expect_failure(1, "compare none.nff --tracers embree,reference --json none/a.json", "none/a.json");
@@ -129,6 +130,18 @@ TEST_F(CliFailure, UnwritableOutputIsFoundBeforeTheWork) {
 
 TEST_F(CliFailure, PicturesThatNoMemoryHoldsAreRefused) {
   expect_failure(1, "render scene.nff -o a.exr --size 65536x65536 --aov depth,normal,position", "65536x65536");
+}
+
+TEST_F(CliFailure, FullDiskLeavesNothing) {
+  const auto before = files();
+  for (const char* image : {"a.exr", "a.sgi"}) {
+    const test::Outcome outcome = test::shell(
+        folder_.path(),
+        std::string("ulimit -f 16; " RAYENGINE_COMMAND " render scene.nff --quiet --size 512x512 -o ") + image);
+    EXPECT_EQ(outcome.code, 1) << image;
+    EXPECT_TRUE(outcome.one_line_error()) << outcome.err;
+    EXPECT_EQ(files(), before) << image;
+  }
 }
 
 TEST_F(CliFailure, FullStandardOutputIsTold) {

@@ -26,12 +26,10 @@ inline std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs `rayengine ARGUMENTS` by the shell in `folder`, with `environment` ("A=1 B=2") added to its own.
-inline Outcome rayengine(const std::filesystem::path& folder, const std::string& arguments,
-                         const std::string& environment = "") {
+/// Runs a command by the shell in `folder`.
+inline Outcome shell(const std::filesystem::path& folder, const std::string& line) {
   const std::filesystem::path log = folder / ".stderr";
-  const std::string command = "cd '" + folder.string() + "' && env " + environment + " " RAYENGINE_COMMAND " " +
-                              arguments + " 2> '" + log.string() + "'";
+  const std::string command = "cd '" + folder.string() + "' && { " + line + "; } 2> '" + log.string() + "'";
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) throw std::runtime_error("cannot run " + command);
   Outcome outcome;
@@ -42,6 +40,12 @@ inline Outcome rayengine(const std::filesystem::path& folder, const std::string&
   outcome.err = content(log);
   std::filesystem::remove(log);
   return outcome;
+}
+
+/// Runs `rayengine ARGUMENTS` by the shell in `folder`, with `environment` ("A=1 B=2") added to its own.
+inline Outcome rayengine(const std::filesystem::path& folder, const std::string& arguments,
+                         const std::string& environment = "") {
+  return shell(folder, "env " + environment + " " RAYENGINE_COMMAND " " + arguments);
 }
 
 }  // namespace rayengine::test

@@ -104,14 +104,15 @@ TEST_F(ImageFile, KeepsAlphaThatSaysSomething) {
 
 TEST_F(ImageFile, WritesOtherFormats) {
   Image image = gradient(32, 32, {"R", "G", "B", "A", "Z", "object"});
-  for (const char* name : {"a.tif", "a.bmp", "a.tga", "a.ppm", "a.dpx", "a.jp2", "a.iff"}) {
+  for (const char* name : {"a.tif", "a.bmp", "a.tga", "a.ppm", "a.dpx", "a.jp2", "a.iff", "a.sgi", "a.rla", "a.fits"}) {
     const Image back = round_trip(name, image);
     EXPECT_EQ(back.channels.size(), 3u) << name;
     expect_near(back, image, 0.501f / 255 * 2.3f);
   }
   EXPECT_EQ(round_trip("linear.tif", image, Encoding::linear).channels.size(),
             3u);  // TIFF cannot say that it is linear
-  expect_near(round_trip("a.jpg", image), image, 0.1f);
+  for (const char* name : {"a.jpg", "a.webp", "a.gif"}) expect_near(round_trip(name, image), image, 0.1f);
+  expect_near(round_trip("a.ico", image), image, 0.501f / 255 * 2.3f);
   image.pixel(1, 1)[0] = 100;
   expect_near(round_trip("a.hdr", image), image, 0.5f);
   EXPECT_NEAR(read_image(folder.path() / "a.hdr").pixel(1, 1)[0], 100, 0.5);
@@ -120,7 +121,12 @@ TEST_F(ImageFile, WritesOtherFormats) {
 TEST_F(ImageFile, ChecksBeforeTheWork) {
   expect_error([&] { check_writable(folder.path() / "a.xyz"); }, "a.xyz", "names no image format");
   expect_error([&] { check_writable(folder.path() / "noextension"); }, "noextension", "names no image format");
-  expect_error([&] { check_writable(folder.path() / "a.sgi"); }, "a.sgi", "names no image format");
+  for (const char* name : {"a.null", "a.term", "a.zfile", "a.psd"})
+    expect_error([&] { check_writable(folder.path() / name); }, name, "names no image format");
+  expect_error([&] { check_holds(folder.path() / "a.ico", 100, 257); }, "a.ico", "1 to 256 pixels a side");
+  expect_error([&] { check_holds(folder.path() / "a.jpg", 65501, 1); }, "a.jpg", "1 to 65500 pixels a side");
+  expect_error([&] { check_holds(folder.path() / "a.jp2", 31, 64); }, "a.jp2", "32 to 65536 pixels a side");
+  EXPECT_NO_THROW(check_holds(folder.path() / "a.png", 65536, 1));
   expect_error([&] { check_writable(folder.path() / "none" / "a.png"); }, "a.png", "No such file or directory");
   expect_error([&] { check_writable(folder.path()); }, folder.path().string(), "Is a directory");
   EXPECT_TRUE(fs::is_empty(folder.path()));
@@ -139,6 +145,9 @@ TEST_F(ImageFile, LeavesNothingOnAFullDisk) {
         name, "cannot write");
     EXPECT_TRUE(fs::is_empty(folder.path())) << name;
   }
+  const test::FileLimit limit(16384);
+  EXPECT_THROW(write_image(folder.path() / "a.sgi", image), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 TEST_F(ImageFile, RejectsWhatIsNoImage) {
