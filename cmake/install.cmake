@@ -35,5 +35,6 @@ install(FILES ${PROJECT_BINARY_DIR}/rayengine.pc DESTINATION ${pkgconfig_folder}
 
 if(RAYENGINE_TOOLS)
   install(TARGETS rayengine_cli)
+  install(TARGETS rayengine_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/rayengine)
 endif()
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/rayengine)

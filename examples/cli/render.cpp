@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <future>
 #include <iostream>
 #include <numeric>
 
@@ -63,7 +64,7 @@ void check(Options& o) {
   if (!o.render.aovs.empty() && o.output.extension() != ".exr")
     throw CLI::ValidationError(
         "--aov", "needs a format with named channels: write to a .exr file, not to '" + o.output.string() + "'");
-  check_writable(o.output);
+  check_output(o.output);
   if (!o.stats.empty()) check_output(o.stats);
   if (o.size) check_size(*o.size, 4);
 }
@@ -137,7 +138,10 @@ RenderResult render_with_progress(const Options& o, const Scene& scene, Tracer& 
 int run(Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
+  // The libraries behind image formats take longer to load than many a scene: side by side.
+  std::future<void> format = std::async(std::launch::async, [&] { check_writable(o.output); });
   LoadedScene loaded = load(o.scene, o.common);
+  format.get();
   Scene& scene = loaded.scene;
   if (o.size) scene.camera.size = *o.size;
   check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());

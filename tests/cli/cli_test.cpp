@@ -119,7 +119,7 @@ TEST_F(CliFailure, WorkThatCannotBeDoneExitsWith1) {
 
 TEST_F(CliFailure, UnwritableOutputIsFoundBeforeTheWork) {
   expect_failure(1, "render none.nff -o none/a.png", "none/a.png");
-  expect_failure(1, "render none.nff -o a.frob", "a.frob");
+  expect_failure(1, "render scene.nff -o a.frob", "a.frob");
   expect_failure(1, "render scene.nff -o a.ico --size 257x16", "a.ico");
   expect_failure(1, "render none.nff -o a.png --stats none/a.json", "none/a.json");
   expect_failure(1, "trace none.nff --rays none.npy -o none/hits.npy", "none/hits.npy");

@@ -1,4 +1,4 @@
-#include "engine/load/memory_file.h"
+#include "engine/load/images/memory_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
