@@ -54,7 +54,7 @@ std::vector<ObjectsEngine::Pass> ObjectsEngine::passes() const {
   std::vector<Pass> result;
   const auto& owners = scene_.geometry->triangle_object;
   for (std::uint32_t i = 0; i < owners.size(); ++i)
-    if (i > 0 && owners[i] == owners[i - 1])
+    if (i > 0 && owners[i] == owners[i - 1] && result.back().count < longest_loop)
       ++result.back().count;
     else
       result.push_back({0, i, 1});

@@ -26,7 +26,7 @@ class ObjectsEngine : public DeviceEngine {
   std::size_t bytes() const override { return textures_.bytes; }
 
  private:
-  /// One object of one type, or what there is of it in a run.
+  /// One object of one type, or a run of a mesh.
   struct Pass {
     std::size_t type;  // index into textures_.types
     std::uint32_t first, count;

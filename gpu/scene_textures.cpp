@@ -69,7 +69,7 @@ std::vector<KernelType> types_in(const Geometry& g) {
   return types;
 }
 
-/// First primitive and count for every type of every treelet, those without bounds last.
+/// First primitive and count for every type of every treelet, then of those without bounds, then of none.
 std::vector<std::array<std::uint32_t, 2>> ranges_of(const Geometry& g, const Treelets& treelets,
                                                     const std::vector<KernelType>& types) {
   std::vector<std::array<std::uint32_t, 2>> ranges;
@@ -89,6 +89,7 @@ std::vector<std::array<std::uint32_t, 2>> ranges_of(const Geometry& g, const Tre
   };
   for (const Treelet& t : treelets.treelets) append(t);
   append(treelets.unbounded);
+  append({});
   return ranges;
 }
 

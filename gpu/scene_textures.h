@@ -12,6 +12,9 @@ namespace rayengine {
 /// A kind of primitive that has an intersection shader of its own: TreeletPrimitive::triangle, or a QuadricType.
 using KernelType = std::uint32_t;
 
+/// Primitives that one loop of a shader may test: llvmpipe ends every loop after 65,535 rounds.
+inline constexpr std::uint32_t longest_loop = 1u << 15;
+
 /// The primitives of a scene on the device, in the order of its treelets and in the coordinates of their frame. What
 /// the texels mean is said in gpu/shaders/stream.
 struct SceneTextures {
@@ -27,5 +30,7 @@ SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const Gpu
 inline std::uint32_t unbounded_treelet(const Treelets& treelets) {
   return static_cast<std::uint32_t>(treelets.treelets.size());
 }
+/// The number of a treelet that holds nothing.
+inline std::uint32_t empty_treelet(const Treelets& treelets) { return unbounded_treelet(treelets) + 1; }
 
 }  // namespace rayengine

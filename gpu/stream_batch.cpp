@@ -22,16 +22,22 @@ StreamBatch::StreamBatch(GLsizei side)
       depth_(make_texture(GL_DEPTH_COMPONENT32F, side, side)) {
   glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, hits_.object.id(), 0);
   glNamedFramebufferTexture(frame_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
-  glNamedFramebufferTexture(states_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
 }
 
-std::size_t StreamBatch::rays_in_rows(std::size_t count) const {
+std::size_t StreamBatch::place(std::size_t i) const {
   const auto side = static_cast<std::size_t>(side_);
-  return (count + side - 1) / side * side;
+  const std::size_t block_row = i / (4 * side), column = i % (4 * side) / 16 * 4 + i % 4, row = i % 16 / 4;
+  return (4 * block_row + row) * side + column;
+}
+
+std::size_t StreamBatch::rays_in_blocks(std::size_t count) const {
+  const std::size_t block_row = 4 * static_cast<std::size_t>(side_);
+  return (count + block_row - 1) / block_row * block_row;
 }
 
 void StreamBatch::upload(std::size_t count) {
-  rows_ = static_cast<GLsizei>(rays_in_rows(count)) / side_;
+  count_ = count;
+  rows_ = static_cast<GLsizei>(rays_in_blocks(count)) / side_;
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_.object.id());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bool integer = i >= 2;
@@ -41,14 +47,14 @@ void StreamBatch::upload(std::size_t count) {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   bind();
   const GLuint no_hit[4] = {0x7F7FFFFFu, no_id, 0, 0};  // the largest number
-  const GLfloat no_state = 1;
   glClearNamedFramebufferuiv(frame_.id(), GL_COLOR, 0, no_hit);
-  glClearNamedFramebufferfv(frame_.id(), GL_DEPTH, 0, &no_state);
+  glClearNamedFramebufferfv(frame_.id(), GL_DEPTH, 0, &state_start);
 }
 
 void StreamBatch::bind() const {
   for (GLuint i = 0; i < inputs_.size(); ++i) inputs_[i].bind(i);
   hits_.bind(hits_unit);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame_.id());
   glViewport(0, 0, side_, rows_);
   glScissor(0, 0, side_, rows_);
 }

@@ -11,14 +11,18 @@
 
 namespace rayengine {
 
-/// Treelets that a ray takes along to the device at once.
-inline constexpr std::uint32_t list_length = 4;
+/// Treelets that a ray can take along to the device at once.
+inline constexpr std::uint32_t longest_list = 4;
+
+/// Depths that rays have as states: before any pass, and when they are done.
+inline constexpr float state_start = 0, state_done = 1;
 
 /// One stream of rays on its way: textures with one texel a ray, and the mapped memory that they are filled from and
 /// read back into. The CPU writes the spans, upload() and read_back() copy, and `finished` says when the answers are
 /// there.
 class StreamBatch {
  public:
+  /// `side` x `side` rays; a multiple of 4.
   explicit StreamBatch(GLsizei side);
 
   std::size_t capacity() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
@@ -36,15 +40,19 @@ class StreamBatch {
   };
   std::span<const Answer> answers() const { return read_back_.as<const Answer>(0, capacity()); }
 
-  /// Fills the textures from the first `count` rays, and clears hits and states. Lists must say `none` up to the end of
-  /// rays_in_rows(count).
+  /// The place of ray `i` in the spans. Rays fill blocks of 4 x 4 texels, since devices shade blocks of texels in step
+  /// and neighbours among the rays have most in common.
+  std::size_t place(std::size_t i) const;
+
+  /// Fills the textures from the first `count` rays, and clears hits and states. Lists must be filled up to the end of
+  /// rays_in_blocks(count).
   void upload(std::size_t count);
-  std::size_t rays_in_rows(std::size_t count) const;
-  /// Binds the textures, and limits drawing to the rows in use.
+  std::size_t rays_in_blocks(std::size_t count) const;
+  /// Binds the textures and the target, and limits drawing to the rows in use.
   void bind() const;
-  void draw_states() const { glBindFramebuffer(GL_FRAMEBUFFER, states_.id()); }
-  void draw_hits() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_.id()); }
   void read_back();
+  /// Of the last upload and read-back.
+  std::size_t bytes_carried() const { return rays_in_blocks(count_) * (4 * sizeof(glm::vec4) + sizeof(Answer)); }
   /// Waits for the answers. Throws Error when there is no hope of them, or they mean nothing.
   void await(Context& context) const { rayengine::await(*fence_, context); }
 
@@ -52,10 +60,11 @@ class StreamBatch {
   std::size_t section() const { return capacity() * sizeof(glm::vec4); }
 
   GLsizei side_, rows_ = 0;
+  std::size_t count_ = 0;
   MappedBuffer upload_, read_back_;
   std::array<Texture, 4> inputs_;
   Texture hits_, depth_;
-  Framebuffer frame_ = make_framebuffer(), states_ = make_framebuffer();  // hits and states, states alone
+  Framebuffer frame_ = make_framebuffer();
   std::optional<Fence> fence_;
 };
 

@@ -1,8 +1,6 @@
 #include "gpu/stream_engine.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -19,18 +17,32 @@ constexpr std::size_t block = 256;  // rays that are walked together
 
 /// Where single precision is tested in software, tests are dear and lists cheap.
 std::uint32_t treelet_size(const StreamOptions& options, const GpuInfo& gpu) {
-  return options.treelet_size ? options.treelet_size : gpu.software ? 8 : 512;
+  return std::min(options.treelet_size ? options.treelet_size : gpu.software ? 8 : 512, longest_loop);
 }
 
 GLsizei batch_side(const StreamOptions& options, const GpuInfo& gpu) {
-  return std::min(options.batch_side ? options.batch_side : gpu.software ? 256 : 512, gpu.texture_size);
+  const int wanted = options.batch_side ? options.batch_side : gpu.software ? 256 : 512;
+  return std::min(wanted, gpu.texture_size) / 4 * 4;
+}
+
+/// Rays that are done leave holes among those that are not: where shading is dear, short lists let them close up
+/// sooner.
+std::uint32_t list_length(const StreamOptions& options, const GpuInfo& gpu, const Treelets& treelets) {
+  const std::uint32_t wanted = options.list_length ? options.list_length : gpu.software ? 2 : longest_list;
+  return std::min(wanted, longest_list - (treelets.unbounded.size() > 0 ? 1 : 0));
+}
+
+/// Calls work(first) for the first of every block of `count`, in parallel.
+template <class Work>
+void for_blocks(std::size_t count, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, (count + block - 1) / block, [&](std::size_t b) { work(b * block); });
 }
 
 /// Calls work(i) for all i below `count`, in parallel.
 template <class Work>
-void for_blocks(std::size_t count, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, block), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+void for_each(std::size_t count, const Work& work) {
+  for_blocks(count, [&](std::size_t first) {
+    for (std::size_t i = first; i < std::min(first + block, count); ++i) work(i);
   });
 }
 
@@ -42,7 +54,11 @@ StreamEngine::StreamEngine(std::shared_ptr<const Geometry> geometry, const Strea
       side_(batch_side(options, context_.info())),
       scene_(flatten(std::move(geometry))),
       treelets_(build_treelets(treelet_primitives(*scene_.geometry), treelet_size(options, context_.info()))),
+      list_length_(rayengine::list_length(options, context_.info(), treelets_)),
       textures_(upload(scene_, treelets_, context_.info())) {
+  if (treelets_.unbounded.size() > longest_loop)
+    throw Error("the scene has " + std::to_string(treelets_.unbounded.size()) + " surfaces without bounds, more than " +
+                std::to_string(longest_loop) + ", what a shader can test in one loop; use --tracer embree");
   require_usable(context_);
   kernels(StreamQuery::closest);
   context_.check_errors("the upload of the scene");
@@ -57,17 +73,33 @@ const StreamKernels& StreamEngine::kernels(StreamQuery query) {
 StreamTraveller StreamEngine::set_out(std::uint32_t index, const Ray& ray) const {
   StreamTraveller t;
   t.ray = index;
-  t.world = ray;
-  t.frame = in_frame(treelets_.frame, ray);
+  if (is_valid(ray)) {
+    t.tmin = ray.tmin, t.tmax = ray.tmax;
+    t.frame = in_frame(treelets_.frame, ray);
+  } else {
+    t.fresh = false;
+    t.cursor.last = WalkCursor::end;
+  }
   return t;
 }
 
 void StreamEngine::look_behind(StreamTraveller& t, const Ray& ray) const {
   rayengine::look_behind(t);
-  t.world.tmax = ray.tmax;
-  t.world.tmin = std::clamp(t.frame.to_world(t.best_t - frame_slack(t.best_t)), ray.tmin, ray.tmax);
+  t.tmax = ray.tmax;
+  t.tmin = std::clamp(t.frame.to_world(t.best_t - frame_slack(t.best_t)), ray.tmin, ray.tmax);
   t.cursor = {};
   t.fresh = true;
+}
+
+/// First those who must go on, then new ones.
+void StreamEngine::fill(Slot& slot, Job& job) const {
+  slot.old = std::min(job.again.size(), batch_rays());
+  slot.first_fresh = job.next;
+  const std::size_t fresh = std::min(batch_rays() - slot.old, job.rays.size() - job.next);
+  slot.travellers.resize(slot.old + fresh);
+  std::copy(job.again.end() - static_cast<std::ptrdiff_t>(slot.old), job.again.end(), slot.travellers.begin());
+  job.again.resize(job.again.size() - slot.old);
+  job.next += fresh;
 }
 
 /// Puts what the walk found in the form that shaders read.
@@ -86,64 +118,83 @@ void StreamEngine::list(StreamTraveller& t, std::span<const TreeletEntry> found)
   t.fresh = false;
 }
 
-void StreamEngine::list_block(std::span<StreamTraveller> travellers) const {
-  const std::uint32_t length = list_length - (treelets_.unbounded.size() > 0 ? 1 : 0);
+void StreamEngine::list_block(std::span<StreamTraveller> travellers, std::span<const Ray> rays) const {
   const std::size_t count = travellers.size();
-  std::array<Ray, block> rays;
+  std::array<Ray, block> walking;
   std::array<WalkCursor, block> cursors;
-  std::array<TreeletEntry, block * list_length> lists;
+  std::array<TreeletEntry, block * longest_list> lists;
   std::array<std::uint32_t, block> counts;
-  for (std::size_t i = 0; i < count; ++i) rays[i] = travellers[i].world, cursors[i] = travellers[i].cursor;
-  walk(treelets_, {rays.data(), count}, {cursors.data(), count}, length, lists, {counts.data(), count});
+  for (std::size_t i = 0; i < count; ++i) {
+    const StreamTraveller& t = travellers[i];
+    walking[i] = {rays[t.ray].origin, t.tmin, rays[t.ray].direction, t.tmax};
+    cursors[i] = t.cursor;
+  }
+  walk(treelets_, {walking.data(), count}, {cursors.data(), count}, list_length_, lists, {counts.data(), count});
   for (std::size_t i = 0; i < count; ++i) {
     travellers[i].cursor = cursors[i];
-    list(travellers[i], {lists.data() + i * length, counts[i]});
+    list(travellers[i], {lists.data() + i * list_length_, counts[i]});
   }
 }
 
-/// Gives every traveller a place in the batch: those who go to the same treelets side by side, since shaders run in
-/// step with their neighbours, and those with nowhere to go behind all others. Returns how many have somewhere to go.
-std::size_t StreamEngine::take_places(Slot& slot) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(slot.travellers.size());
-  for_blocks(keys.size(), [&](std::size_t i) {
-    const glm::uvec4& treelets = slot.travellers[i].treelets;
-    keys[i] = {std::uint64_t{treelets.x} << 32 | treelets.y, static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(keys);
-  slot.order.resize(keys.size());
-  std::transform(keys.begin(), keys.end(), slot.order.begin(), [](const auto& key) { return key.second; });
-  const auto nowhere = std::pair(std::uint64_t{no_id} << 32, 0u);
-  return static_cast<std::size_t>(std::lower_bound(keys.begin(), keys.end(), nowhere) - keys.begin());
+/// Lists the next treelets of a block of travellers. Those with none have their answer.
+void StreamEngine::prepare_block(Slot& slot, const Job& job, std::size_t first) const {
+  const std::size_t last = std::min(first + block, slot.travellers.size());
+  for (std::size_t i = std::max(first, slot.old); i < last; ++i) {
+    const std::size_t ray = slot.first_fresh + (i - slot.old);
+    slot.travellers[i] = set_out(static_cast<std::uint32_t>(ray), job.rays[ray]);
+  }
+  list_block(std::span(slot.travellers).subspan(first, last - first), job.rays);
+  for (std::size_t i = first; i < last; ++i) {
+    StreamTraveller& t = slot.travellers[i];
+    slot.stays[i] = t.listed == 0 && !arrived(t, job);
+  }
 }
 
-void StreamEngine::send(Slot& slot, StreamQuery query) {
-  const std::span<StreamTraveller> travellers(slot.travellers);
-  tbb::parallel_for(std::size_t{0}, (travellers.size() + block - 1) / block, [&](std::size_t b) {
-    list_block(travellers.subspan(b * block, std::min(block, travellers.size() - b * block)));
-  });
-  slot.sent = take_places(slot);
+/// Gives those who have somewhere to go their places: who goes to the same treelets side by side, since shaders run in
+/// step with their neighbours.
+void StreamEngine::take_places(Slot& slot) const {
+  const unsigned bits = std::bit_width(empty_treelet(treelets_));
+  const std::uint64_t none = (std::uint64_t{1} << bits) - 1;
+  slot.order.clear();
+  for (std::uint32_t i = 0; i < slot.travellers.size(); ++i) {
+    const StreamTraveller& t = slot.travellers[i];
+    if (t.listed > 0) slot.order.push_back({(t.treelets.x & none) << bits | (t.treelets.y & none), i});
+  }
+  radix_sort(slot.order, slot.spare, 2 * bits);
+}
+
+void StreamEngine::send(Slot& slot, Job& job) {
+  slot.stays.resize(slot.travellers.size());
+  for_blocks(slot.travellers.size(), [&](std::size_t first) { prepare_block(slot, job, first); });
+  for (std::size_t i = 0; i < slot.travellers.size(); ++i)
+    if (slot.stays[i]) job.again.push_back(slot.travellers[i]);
+  take_places(slot);
   const StreamBatch& batch = slot.batch;
-  for_blocks(slot.sent, [&](std::size_t i) {
-    const StreamTraveller& t = travellers[slot.order[i]];
-    batch.origins()[i] = {t.frame.origin, t.frame.tmin};
-    batch.directions()[i] = {t.frame.direction, t.best_rank == no_id ? t.frame.tmax : t.best_t};
-    batch.lists()[i] = t.treelets;
-    batch.entries()[i] = t.entries;
+  for_each(slot.order.size(), [&](std::size_t i) {
+    const StreamTraveller& t = slot.travellers[slot.order[i].index];
+    const std::size_t place = batch.place(i);
+    batch.origins()[place] = {t.frame.origin, t.frame.tmin};
+    batch.directions()[place] = {t.frame.direction, t.best_rank == no_id ? t.frame.tmax : t.best_t};
+    batch.lists()[place] = t.treelets;
+    batch.entries()[place] = t.entries;
   });
-  const auto shorter = [](const StreamTraveller& a, const StreamTraveller& b) { return a.listed < b.listed; };
-  if (slot.sent > 0) dispatch(slot, query, std::max_element(travellers.begin(), travellers.end(), shorter)->listed);
+  if (!slot.order.empty()) dispatch(slot, job.query);
 }
 
-void StreamEngine::dispatch(Slot& slot, StreamQuery query, std::uint32_t rounds) {
-  const auto rest = slot.batch.lists().subspan(slot.sent, slot.batch.rays_in_rows(slot.sent) - slot.sent);
-  std::fill(rest.begin(), rest.end(), glm::uvec4(no_id));
-  slot.batch.upload(slot.sent);
+void StreamEngine::dispatch(Slot& slot, StreamQuery query) {
+  std::uint32_t rounds = 0;
+  for (const SortKey& k : slot.order) rounds = std::max(rounds, slot.travellers[k.index].listed);
+  const std::size_t count = slot.order.size();
+  for (std::size_t i = count; i < slot.batch.rays_in_blocks(count); ++i)
+    slot.batch.lists()[slot.batch.place(i)] = {empty_treelet(treelets_), no_id, no_id, no_id};
+  slot.batch.upload(count);
   kernels(query).run(slot.batch, textures_, rounds);
   slot.batch.read_back();
+  bytes_carried_ += slot.batch.bytes_carried();
 }
 
 /// Whether nothing on the rest of the ray's way can change its answer.
-bool StreamEngine::settled(const StreamTraveller& t, StreamQuery query) const {
+bool StreamEngine::settled(const StreamTraveller& t, StreamQuery query) {
   if (t.cursor.finished()) return true;
   if (t.best_rank == no_id) return false;
   return query == StreamQuery::any || (t.listed > 0 && t.best_t < t.last_entry);
@@ -155,58 +206,44 @@ void StreamEngine::enter(StreamTraveller& t, const StreamBatch::Answer& answer) 
       t.best_rank == no_id || answer.t < t.best_t || (answer.t == t.best_t && answer.rank < t.best_rank);
   if (answer.rank == no_id || !nearer) return;
   t.best_t = answer.t, t.best_rank = answer.rank;
-  t.world.tmax = std::min(t.world.tmax, t.frame.to_world(answer.t + frame_slack(answer.t)));
+  t.tmax = std::min(t.tmax, t.frame.to_world(answer.t + frame_slack(answer.t)));
 }
 
 /// Whether the traveller's journey has ended.
-bool StreamEngine::arrived(StreamTraveller& t, std::span<const Ray> rays, StreamQuery query,
-                           const Arrive& arrive) const {
-  if (!settled(t, query)) return false;
-  if (arrive(t) == Next::done) return true;
-  look_behind(t, rays[t.ray]);
+bool StreamEngine::arrived(StreamTraveller& t, const Job& job) const {
+  if (!settled(t, job.query)) return false;
+  if (job.arrive(t) == Next::done) return true;
+  look_behind(t, job.rays[t.ray]);
   return false;
 }
 
-void StreamEngine::collect(Slot& slot, std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
-  if (slot.sent > 0) slot.batch.await(context_);
-  std::vector<char> done(slot.travellers.size());
-  for_blocks(done.size(), [&](std::size_t i) {
-    StreamTraveller& t = slot.travellers[slot.order[i]];
-    if (i < slot.sent) enter(t, slot.batch.answers()[i]);
-    done[i] = arrived(t, rays, query, arrive);
+void StreamEngine::collect(Slot& slot, Job& job) {
+  if (slot.order.empty()) return;
+  slot.batch.await(context_);
+  for_each(slot.order.size(), [&](std::size_t i) {
+    const std::uint32_t index = slot.order[i].index;
+    StreamTraveller& t = slot.travellers[index];
+    enter(t, slot.batch.answers()[slot.batch.place(i)]);
+    slot.stays[index] = !arrived(t, job);
   });
-  for (std::size_t i = 0; i < done.size(); ++i)
-    if (!done[i]) again_.push_back(slot.travellers[slot.order[i]]);
-}
-
-/// First those who must go on, then new ones.
-void StreamEngine::fill(Slot& slot, std::span<const Ray> rays, std::size_t& next) {
-  const std::size_t old = std::min(again_.size(), batch_rays());
-  slot.travellers.assign(again_.end() - static_cast<std::ptrdiff_t>(old), again_.end());
-  again_.resize(again_.size() - old);
-  for (; slot.travellers.size() < batch_rays() && next < rays.size(); ++next)
-    if (is_valid(rays[next])) slot.travellers.push_back(set_out(static_cast<std::uint32_t>(next), rays[next]));
+  for (const SortKey& k : slot.order)
+    if (slot.stays[k.index]) job.again.push_back(slot.travellers[k.index]);
 }
 
 void StreamEngine::trace(std::span<const Ray> rays, StreamQuery query, const Arrive& arrive) {
-  again_.clear();
+  Job job{rays, query, arrive};
   const std::size_t wanted = std::min(static_cast<std::size_t>(options_.in_flight), rays.size() / batch_rays() + 1);
   while (slots_.size() < wanted) slots_.push_back(std::make_unique<Slot>(side_));
   std::deque<Slot*> free, busy;
   for (const auto& slot : slots_) free.push_back(slot.get());
-  for (std::size_t next = 0; next < rays.size() || !again_.empty() || !busy.empty();) {
-    const bool more = next < rays.size() || !again_.empty();
-    auto& from = more && !free.empty() ? free : busy;
+  const auto more = [&] { return job.next < rays.size() || !job.again.empty(); };
+  while (more() || !busy.empty()) {
+    const bool go = more() && !free.empty();
+    auto &from = go ? free : busy, &to = go ? busy : free;
     Slot& slot = *from.front();
     from.pop_front();
-    if (&from == &free) {
-      fill(slot, rays, next);
-      send(slot, query);
-      busy.push_back(&slot);
-    } else {
-      collect(slot, rays, query, arrive);
-      free.push_back(&slot);
-    }
+    go ? (fill(slot, job), send(slot, job)) : collect(slot, job);
+    to.push_back(&slot);
   }
 }
 

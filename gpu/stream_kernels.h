@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,28 +12,32 @@
 
 namespace rayengine {
 
-/// The passes that answer a batch: for each place in the rays' lists and each type of primitive, one that selects the
-/// rays in that state by depth, and one that tests them under an EQUAL depth test.
+/// The passes that answer a batch. Each ray's state is a depth: done, or not. For each place in the rays' lists, one
+/// pass finds those that are done now; then, for each type of primitive, one selects the rays in that state (unless
+/// there is only one type), and one tests them under an EQUAL depth test.
 class StreamKernels {
  public:
   /// Compiles the shaders that the types need. `defines` are added to each kernel: the tests' way to break one.
   StreamKernels(const SceneTextures& scene, StreamQuery query, const std::vector<std::string>& defines);
 
-  /// Issues every pass for rays whose lists have up to `rounds` treelets; nothing here waits for the device. Tests that
-  /// no ray needs are skipped where the device knows by then.
+  /// Issues every pass for rays whose lists have up to `rounds` treelets, the first of which all of them have; nothing
+  /// here waits for the device. Occlusion queries count the rays that are left, and spare the passes for none where the
+  /// device knows by then.
   void run(const StreamBatch& batch, const SceneTextures& scene, std::uint32_t rounds) const;
 
   /// Seconds that compiling took; little when the programs came from the cache.
   double compile_seconds() const { return compile_seconds_; }
 
  private:
-  void select(const Query& any, float state) const;
-  void test(const Query& any, float state) const;
+  void use(const Program& program, std::uint32_t round, std::size_t type) const;
+  void draw_states(float state) const;
+  void test(std::uint32_t round, std::size_t type, float state) const;
+  void test_types(const SceneTextures& scene, std::uint32_t round) const;
 
   double compile_seconds_ = 0;
-  std::optional<Program> select_;
-  std::vector<Program> tests_;   // by type
-  std::vector<Query> selected_;  // by type: whether any ray was
+  std::optional<Program> settle_, select_;
+  std::vector<Program> tests_;              // by type
+  std::array<Query, longest_list> tested_;  // by place in the lists: whether any ray was
   VertexArray vertices_ = make_vertex_array();
 };
 

@@ -12,6 +12,7 @@ namespace rayengine {
 struct StreamOptions {
   int device = -1;                   ///< an EGL device by its number; the best when negative
   std::uint32_t treelet_size = 0;    ///< primitives that a treelet holds at most; 0 for what suits the device
+  std::uint32_t list_length = 0;     ///< treelets that a ray takes along at once, up to 4; 0 for what suits the device
   int batch_side = 0;                ///< a batch holds side x side rays; 0 for what suits the device
   int in_flight = 3;                 ///< batches on the device at once
   std::vector<std::string> defines;  ///< added to the kernels: how tests break one to see that it is noticed

@@ -1,6 +1,7 @@
-// What the passes of the stream tracer cost on this machine's GPU: a pass against the share of rays alive, tests/s of a
-// kernel alone and inside the loop, and rays/s against K.
-// Usage: stream_bench [MESH [K...]]    (without a mesh: 7,381 spheres)
+// What the stream tracer costs on this machine's GPU, as CSV. Lines with # say on what.
+// Usage: stream_bench passes SCENE [K]      a pass of the loop against the share of rays that are not done
+//        stream_bench loop SCENE [K...]     rays/s and tests/s against K, traffic and memory
+// On a rasterizer in software seconds are those of the processor, over all its cores: other work disturbs them less.
 
 #include <epoxy/gl.h>
 
@@ -9,16 +10,16 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <functional>
-#include <glm/geometric.hpp>
 #include <random>
 
 #include "accel/tracer.h"
 #include "accel/walk.h"
 #include "engine/load/load.h"
 #include "engine/measure/rays.h"
-#include "gpu/stream_kernels.h"
+#include "gpu/stream_engine.h"
 #include "gpu/stream_tracer.h"
 
 namespace rayengine {
@@ -26,94 +27,136 @@ namespace {
 
 constexpr GLsizei side = 512;
 constexpr std::size_t ray_count = static_cast<std::size_t>(side) * side;
+constexpr int runs = 9;
 
-/// On a rasterizer in software the processor's time, which other work on the machine disturbs less.
 double now(bool software) {
   if (software) return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The median of five runs.
-double seconds(bool software, const std::function<void()>& work) {
-  std::vector<double> times(5);
-  for (double& time : times) {
-    const double start = now(software);
-    work();
-    time = now(software) - start;
-  }
-  std::nth_element(times.begin(), times.begin() + 2, times.end());
-  return times[2];
+template <class Work>
+double seconds(bool software, const Work& work) {
+  const double start = now(software);
+  work();
+  return now(software) - start;
 }
 
-std::shared_ptr<const Geometry> spheres() {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> place(-1, 1);
-  GeometryBuilder builder;
-  for (int i = 0; i < 7381; ++i)
-    builder.add(QuadricShape{}, 0,
-                Affine::translate({place(random), place(random), place(random)}) * Affine::scale(glm::dvec3(.02)));
-  return builder.build();
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-std::vector<Ray> rays_at(const Geometry& geometry) {
-  Camera camera;
-  camera.at = geometry.bounds.center();
-  camera.from = camera.at + glm::dvec3(0, -1.6, .8) * glm::length(geometry.bounds.size());
-  camera.size = {side, side};
-  return primary_rays(camera);
+/// Medians of several runs of what tells its seconds, taken in turns, so that what the machine does meanwhile strikes
+/// all alike.
+std::vector<double> in_turns(const std::vector<std::function<double()>>& works) {
+  std::vector<std::vector<double>> times(works.size());
+  for (int run = -1; run < runs; ++run)  // one to warm up
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      const double time = works[i]();
+      if (run >= 0) times[i].push_back(time);
+    }
+  std::vector<double> medians;
+  for (auto& t : times) medians.push_back(median(std::move(t)));
+  return medians;
 }
 
-/// A batch whose rays all take one treelet along, or none.
-class OneTreelet {
+std::vector<Ray> rays_of(Scene& scene) {
+  scene.camera.size = {side, side};
+  return primary_rays(scene.camera);
+}
+
+/// A batch that can be run on chosen treelets, without the tracer around it.
+class Passes {
  public:
-  OneTreelet(const Geometry& geometry, std::uint32_t K)
+  Passes(const Geometry& geometry, std::span<const Ray> rays, std::uint32_t K)
       : scene_{std::make_shared<Geometry>(geometry), std::vector<std::uint32_t>(geometry.triangles.size()),
                std::vector<std::uint32_t>(geometry.quadrics.size())},
         treelets_(build_treelets(treelet_primitives(geometry), K)),
         textures_(upload(scene_, treelets_, context_.info())),
         kernels_(textures_, StreamQuery::closest, {}) {
-    const auto larger = [](const Treelet& a, const Treelet& b) { return a.size() < b.size(); };
-    largest_ =
-        std::max_element(treelets_.treelets.begin(), treelets_.treelets.end(), larger) - treelets_.treelets.begin();
-    const std::vector<Ray> rays = rays_at(geometry);
+    const auto& all = treelets_.treelets;
+    const auto smaller = [](const Treelet& a, const Treelet& b) { return a.size() < b.size(); };
+    largest_ = static_cast<std::uint32_t>(std::max_element(all.begin(), all.end(), smaller) - all.begin());
     for (std::size_t i = 0; i < ray_count; ++i) {
       const FrameRay ray = in_frame(treelets_.frame, rays[i]);
-      batch_.origins()[i] = {ray.origin, ray.tmin};
-      batch_.directions()[i] = {ray.direction, ray.tmax};
-      batch_.entries()[i] = glm::uvec4(no_id, 0, 0, 0);
+      const std::size_t place = batch_.place(i);
+      batch_.origins()[place] = {ray.origin, ray.tmin};
+      batch_.directions()[place] = {ray.direction, ray.tmax};
+      batch_.entries()[place] = glm::uvec4(no_id, 0, 0, 0);
     }
   }
 
-  std::size_t tests() const { return treelets_.treelets[static_cast<std::size_t>(largest_)].size(); }
   const GpuInfo& gpu() const { return context_.info(); }
+  std::size_t primitives() const { return treelets_.treelets[largest_].size(); }
 
-  /// Seconds for the two passes when this share of the rays takes part: side by side, as the tracer sorts them, or
-  /// anywhere.
-  double cost(double alive, bool scattered = false) {
+  /// Seconds of the kernel alone: one pass in which all rays are tested against the largest treelet.
+  double kernel_alone() {
+    set_lists([this](std::size_t) { return glm::uvec4(largest_, no_id, no_id, no_id); });
+    return run(1);
+  }
+
+  /// Seconds of the last pass of the loop when this share of the rays (at least one) is left: side by side, as the
+  /// tracer sorts them, or anywhere. The passes before it have nothing to test, and are taken off.
+  double pass(double share, bool scattered) {
     std::mt19937 random(2);
-    std::bernoulli_distribution chosen(alive);
-    const auto lists = batch_.lists();
-    for (std::size_t i = 0; i < ray_count; ++i) {
-      const bool takes_part = scattered ? chosen(random) : static_cast<double>(i) < alive * ray_count;
-      lists[i] = glm::uvec4(takes_part ? largest_ : no_id, no_id, no_id, no_id);
-    }
+    std::bernoulli_distribution chosen(share);
+    const glm::uvec4 left(empty_treelet(treelets_), empty_treelet(treelets_), largest_, no_id);
+    const glm::uvec4 done(empty_treelet(treelets_), no_id, no_id, no_id);
+    set_lists([&](std::size_t i) {
+      return i == 0 || (scattered ? chosen(random) : static_cast<double>(i) < share * ray_count) ? left : done;
+    });
+    const double before = run(2);
+    return run(3) - before;
+  }
+
+ private:
+  template <class List>
+  void set_lists(const List& list) {
+    for (std::size_t i = 0; i < ray_count; ++i) batch_.lists()[batch_.place(i)] = list(i);
+  }
+
+  double run(std::uint32_t rounds) {
     batch_.upload(ray_count);
     glFinish();
     return seconds(gpu().software, [&] {
-      kernels_.run(batch_, textures_, 1);
+      kernels_.run(batch_, textures_, rounds);
       glFinish();
     });
   }
 
- private:
   Context context_;
   FlatScene scene_;
   Treelets treelets_;
   SceneTextures textures_;
   StreamKernels kernels_;
   StreamBatch batch_{side};
-  std::ptrdiff_t largest_ = 0;
+  std::uint32_t largest_ = 0;
 };
+
+void say_what(const char* file, const Geometry& geometry, const GpuInfo& gpu) {
+  std::printf("# %s: %zu triangles, %zu quadrics; %d x %d rays; %s, seconds of the %s\n", file,
+              geometry.triangles.size(), geometry.quadrics.size(), side, side, gpu.renderer.c_str(),
+              gpu.software ? "processor" : "clock");
+}
+
+void measure_passes(const char* file, std::uint32_t K) {
+  Scene scene = load_scene(file);
+  Passes passes(*scene.geometry, rays_of(scene), K);
+  say_what(file, *scene.geometry, passes.gpu());
+  std::printf("# every ray that is left is tested against %zu primitives\n", passes.primitives());
+  constexpr std::array shares{0., .01, .02, .05, .1, .15, .25, .35, .5, .65, .75, .9, 1.};
+  std::array<std::vector<double>, 2 * shares.size()> costs;
+  for (int run = 0; run < runs; ++run)
+    for (std::size_t i = 0; i < costs.size(); ++i) costs[i].push_back(passes.pass(shares[i / 2], i % 2));
+  const double full = median(costs[costs.size() - 2]);
+  std::printf("share_left,ms,share_of_full,scattered_ms,scattered_share_of_full\n");
+  for (std::size_t i = 0; i < costs.size(); i += 2) {
+    const double sorted = median(costs[i]), scattered = median(costs[i + 1]);
+    std::printf("%.2f,%.3f,%.4f,%.3f,%.4f\n", shares[i / 2], 1e3 * sorted, sorted / full, 1e3 * scattered,
+                scattered / full);
+  }
+}
 
 /// Tests that the loop makes: all of every treelet that a ray enters before its nearest hit.
 std::size_t tests_made(const Geometry& geometry, std::span<const Ray> rays, std::span<const Hit> hits,
@@ -123,6 +166,7 @@ std::size_t tests_made(const Geometry& geometry, std::span<const Ray> rays, std:
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Ray ray = rays[i];
     if (hits[i].hit()) ray.tmax = hits[i].t;
+    tests += treelets.unbounded.size();
     for (WalkCursor cursor; !cursor.finished();) {
       std::array<TreeletEntry, 8> list;
       std::uint32_t count = 0;
@@ -133,34 +177,39 @@ std::size_t tests_made(const Geometry& geometry, std::span<const Ray> rays, std:
   return tests;
 }
 
-void run(const Geometry& geometry, std::vector<std::uint32_t> sizes) {
-  double alone = 0;
-  bool software = false;
-  {
-    OneTreelet one(geometry, 256);
-    software = one.gpu().software;
-    if (software) std::printf("seconds are those of the processor, over all its cores\n");
-    std::printf("%s, %d x %d rays, one treelet of %zu primitives\n", one.gpu().renderer.c_str(), side, side,
-                one.tests());
-    const double full = one.cost(1);
-    alone = static_cast<double>(one.tests() * ray_count) / full;
-    for (const double share : {0., .01, .05, .1, .25, .5, .75, 1.}) {
-      const double cost = one.cost(share), scattered = one.cost(share, true);
-      std::printf("  %5.0f %% alive: %8.2f ms, %5.1f %% of a full pass; scattered %8.2f ms, %5.1f %%\n", 100 * share,
-                  1e3 * cost, 100 * cost / full, 1e3 * scattered, 100 * scattered / full);
-    }
-    std::printf("  kernel alone: %.1f Mtests/s\n", alone * 1e-6);
-  }
-  const std::vector<Ray> rays = rays_at(geometry);
+/// The stream tracer at one K, beside its kernel alone on the same primitives.
+void measure_loop(const Geometry& geometry, std::span<const Ray> rays, const char* rays_name, std::uint32_t K) {
+  StreamOptions options;
+  options.treelet_size = K;
+  const auto shared = std::make_shared<Geometry>(geometry);
+  const auto tracer = make_stream_tracer(shared, Precision::fast, options);
   std::vector<Hit> hits(rays.size());
+  Passes alone(geometry, rays, K);
+  const std::vector<double> times =
+      in_turns({[&] { return seconds(alone.gpu().software, [&] { tracer->closest(rays, hits, RayClass::primary); }); },
+                [&] { return alone.kernel_alone(); }});
+  const double tests = static_cast<double>(tests_made(geometry, rays, hits, K)) / times[0];
+  const double kernel = static_cast<double>(alone.primitives() * ray_count) / times[1];
+
+  StreamEngine engine(shared, options);
+  engine.trace(rays, StreamQuery::closest, [](const Traveller&) { return DeviceEngine::Next::done; });
+  std::printf("%s,%u,%.4f,%.3f,%.3f,%.4f,%.1f,%.1f\n", rays_name, K, static_cast<double>(rays.size()) / times[0] * 1e-6,
+              tests * 1e-6, kernel * 1e-6, tests / kernel,
+              static_cast<double>(engine.bytes_carried()) / static_cast<double>(rays.size()),
+              static_cast<double>(engine.scene_bytes()) /
+                  static_cast<double>(geometry.triangles.size() + geometry.quadrics.size()));
+}
+
+void measure_loops(const char* file, std::vector<std::uint32_t> sizes) {
+  Scene scene = load_scene(file);
+  const std::vector<Ray> primary = rays_of(scene), random = random_rays(scene.geometry->bounds, ray_count);
+  say_what(file, *scene.geometry, Context().info());
+  std::printf(
+      "rays,K,Mrays_per_s,Mtests_per_s,kernel_alone_Mtests_per_s,share_of_kernel_alone,bytes_a_ray,"
+      "device_bytes_a_primitive\n");
   for (const std::uint32_t K : sizes) {
-    StreamOptions options;
-    options.treelet_size = K;
-    const auto tracer = make_stream_tracer(std::make_shared<Geometry>(geometry), Precision::fast, options);
-    const double time = seconds(software, [&] { tracer->closest(rays, hits, RayClass::primary); });
-    const double rate = static_cast<double>(tests_made(geometry, rays, hits, K)) / time;
-    std::printf("  K %4u: %6.3f Mrays/s, %7.1f Mtests/s, %3.0f %% of the kernel alone\n", K, ray_count / time * 1e-6,
-                rate * 1e-6, 100 * rate / alone);
+    measure_loop(*scene.geometry, primary, "primary", K);
+    measure_loop(*scene.geometry, random, "random", K);
   }
 }
 
@@ -170,10 +219,17 @@ void run(const Geometry& geometry, std::vector<std::uint32_t> sizes) {
 int main(int argc, char** argv) {
   using namespace rayengine;
   std::vector<std::uint32_t> sizes;
-  for (int i = 2; i < argc; ++i) sizes.push_back(static_cast<std::uint32_t>(std::atoi(argv[i])));
-  if (sizes.empty()) sizes = {8, 16, 32, 64, 128, 256, 512};
+  for (int i = 3; i < argc; ++i) sizes.push_back(static_cast<std::uint32_t>(std::atoi(argv[i])));
+  const bool passes = argc > 2 && std::strcmp(argv[1], "passes") == 0;
+  if (!passes && !(argc > 2 && std::strcmp(argv[1], "loop") == 0)) {
+    std::fprintf(stderr, "usage: stream_bench passes SCENE [K] | stream_bench loop SCENE [K...]\n");
+    return 2;
+  }
   try {
-    run(argc > 1 ? *load_scene(argv[1]).geometry : *spheres(), sizes);
+    if (passes)
+      measure_passes(argv[2], sizes.empty() ? 256 : sizes.front());
+    else
+      measure_loops(argv[2], sizes.empty() ? std::vector<std::uint32_t>{8, 16, 32, 64, 128, 256, 512, 1024} : sizes);
   } catch (const Error& error) {
     std::fprintf(stderr, "stream_bench: %s\n", error.what());
     return 1;

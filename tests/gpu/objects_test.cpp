@@ -43,6 +43,26 @@ TEST(Objects, HalvesAreRightToTheirPrecision) {
   EXPECT_EQ(objects->limits().quadric_roundoff, 0x1p-11);
 }
 
+TEST(Objects, TestsMeshesThatOnePassIsTooShortFor) {
+  Mesh mesh;  // a staircase of 70,000 steps, seen from above
+  for (unsigned i = 0; i < 70000; ++i) {
+    const double x = i, z = .001 * i;
+    for (const glm::dvec3& corner : {glm::dvec3{x, 0, z}, glm::dvec3{x + 1, 0, z}, glm::dvec3{x, 1, z}})
+      mesh.positions.push_back(corner);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  GeometryBuilder builder;
+  builder.add(mesh);
+  const auto objects = make_objects_tracer(builder.build(), Precision::robust);
+  std::vector<Ray> rays;
+  for (const double x : {0., 32767., 32768., 65534., 65535., 65536., 69999.})
+    rays.push_back({{x + .25, .25, 100}, 0, {0, 0, -1}, infinity});
+  std::vector<Hit> hits(rays.size());
+  objects->closest(rays, hits, RayClass::primary);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    EXPECT_EQ(hits[i].primitive, static_cast<std::uint32_t>(rays[i].origin.x));
+}
+
 TEST(Objects, HalvesListNoHits) {
   const auto objects = make_objects_tracer(one_of_each_type(), Precision::half);
   EXPECT_THROW(objects->all({}), Error);

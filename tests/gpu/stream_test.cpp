@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "cpu/reference_tracer.h"
+#include "engine/measure/rays.h"
+#include "gpu/stream_order.h"
 #include "gpu/stream_tracer.h"
 
 namespace rayengine {
@@ -74,12 +77,65 @@ TEST(Stream, FindsAllHitsInOrder) {
   }
 }
 
+std::shared_ptr<const Geometry> crowd() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-5, 5);
+  GeometryBuilder builder;
+  builder.add(QuadricShape{QuadricType::plane, false, {}, {}, {}}, 0, Affine::translate({0, 0, -6}));
+  for (int i = 0; i < 400; ++i) {
+    const Affine to = Affine::translate({place(random), place(random), place(random)});
+    builder.add(QuadricShape{i % 2 ? QuadricType::paraboloid : QuadricType::cylinder, true, {}, {}, {}}, 0, to);
+    builder.add(Mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}}, 0, to);
+  }
+  return builder.build();
+}
+
+std::vector<Hit> answers(const std::shared_ptr<const Geometry>& geometry, std::span<const Ray> rays,
+                         const StreamOptions& options) {
+  std::vector<Hit> hits(rays.size());
+  make_stream_tracer(geometry, Precision::fast, options)->closest(rays, hits, RayClass::bounce);
+  return hits;
+}
+
+TEST(Stream, HowRaysTravelDoesNotChangeTheirAnswers) {
+  const auto geometry = crowd();
+  const auto rays = random_rays(geometry->bounds, 5000);
+  const std::vector<Hit> right = answers(geometry, rays, {});
+  std::vector<StreamOptions> ways(5);
+  ways[0].treelet_size = 1, ways[0].list_length = 1;
+  ways[1].treelet_size = 3, ways[1].list_length = 4;
+  ways[2].treelet_size = 1000;
+  ways[3].batch_side = 16, ways[3].in_flight = 3;  // twenty batches and more, three of them on the device at a time
+  ways[4].batch_side = 4, ways[4].in_flight = 1;
+  for (const StreamOptions& way : ways) {
+    const std::vector<Hit> hits = answers(geometry, rays, way);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(hits[i].object, right[i].object) << "ray " << i;
+      ASSERT_EQ(hits[i].primitive, right[i].primitive) << "ray " << i;
+      ASSERT_EQ(hits[i].t, right[i].t) << "ray " << i;
+      found += hits[i].hit();
+    }
+    EXPECT_GT(found, rays.size() / 2);
+  }
+}
+
 TEST(Stream, AnEmptySceneIsMissed) {
   const auto stream = make_stream_tracer(GeometryBuilder().build(), Precision::robust);
   const std::vector<Ray> rays{down(0, 0)};
   std::vector<Hit> hits(1);
   stream->closest(rays, hits, RayClass::primary);
   EXPECT_FALSE(hits[0].hit());
+}
+
+TEST(RadixSort, SortsByTheLowBitsAndKeepsTheOrderOfEquals) {
+  std::mt19937_64 random(3);
+  std::vector<SortKey> keys, spare;
+  for (std::uint32_t i = 0; i < 5000; ++i) keys.push_back({random() % 300 << 20 | (i % 7), i});
+  std::vector<SortKey> right = keys;
+  std::stable_sort(right.begin(), right.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  radix_sort(keys, spare, 29);
+  for (std::size_t i = 0; i < keys.size(); ++i) ASSERT_EQ(keys[i].index, right[i].index);
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+// Run over the rays that are not done, under a depth test: keeps those whose list has ended, or whose nearest hit lies before
+// their next treelet, and which so get the depth of those that are done. The others are discarded, and stay as they are.
+bool done(ivec2 at) {
+  if (texelFetch(lists, at, 0)[round] == none) return true;
+  uvec2 hit = texelFetch(hits, at, 0).xy;
+#ifdef ANY_HIT
+  return hit.y != none;
+#else
+  return hit.y != none && uintBitsToFloat(hit.x) < uintBitsToFloat(texelFetch(entries, at, 0)[round]);
+#endif
+}
+
+void main() {
+  if (!done(ivec2(gl_FragCoord.xy))) discard;
+}
