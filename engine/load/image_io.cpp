@@ -9,11 +9,20 @@
 namespace rayengine {
 namespace {
 
+/// The module lies where it was built, beside the program or above the tests, or where it was installed.
+std::filesystem::path find_module() {
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  for (const char* folder : {".", "..", "../" MODULE_FOLDER})
+    if (const auto file = program / folder / image_module; std::filesystem::exists(file)) return file;
+  throw Error(std::string("the image formats, ") + image_module +
+              ", were not found near the program; install it again");
+}
+
 /// The module is never unloaded: the libraries behind it leave threads and memory that name their code.
 const ImageCodec& load_codec() {
-  void* const module = dlopen(image_module, RTLD_LAZY | RTLD_LOCAL);
+  void* const module = dlopen(find_module().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const codec = module ? dlsym(module, image_codec_symbol) : nullptr;
-  if (!codec) throw Error(std::string("cannot load the image formats (") + dlerror() + "); install RayEngine again");
+  if (!codec) throw Error(std::string("the image formats cannot be loaded (") + dlerror() + "); install them again");
   return *static_cast<const ImageCodec*>(codec);
 }
 
