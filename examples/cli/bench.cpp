@@ -12,6 +12,7 @@
 #include "examples/cli/errors.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
+#include "examples/cli/simulate.h"
 
 namespace rayengine::cli {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 struct Options {
   Common common;
   std::vector<std::filesystem::path> scenes;
-  std::filesystem::path json;
+  std::filesystem::path json, csv;
+  bool simulate = false;
   std::string tracers = "embree,embree-bare,embree-sphere,embree-tess";
   std::string precisions = "fast,robust";
   std::optional<glm::ivec2> size;
@@ -73,8 +75,19 @@ void print(const std::filesystem::path& scene, const std::vector<BenchRow>& rows
   std::cout << std::endl;
 }
 
+/// What cannot be asked for together.
+void check(const Options& o) {
+  if (o.simulate && !o.scenes.empty())
+    throw CLI::ValidationError("--simulate", "takes no scenes: its devices are made");
+  if (!o.simulate && !o.csv.empty()) throw CLI::ValidationError("--csv", "is written by --simulate alone");
+  if (!o.simulate && o.scenes.empty()) throw CLI::RequiredError("SCENE");
+  for (const auto& file : {o.json, o.csv})
+    if (!file.empty()) check_output(file);
+}
+
 int run(const Options& o) {
-  if (!o.json.empty()) check_output(o.json);
+  check(o);
+  if (o.simulate) return simulate(o.json, o.csv);
   to_bench(o);  // wrong names are told before anything is loaded
   const ThreadLimit limit(o.common.threads);
   Json rows = Json::array();
@@ -94,7 +107,8 @@ void add_bench(CLI::App& app, Action& action) {
   CLI::App* sub = add_subcommand(
       app, "bench", "Measure rays per second, and check the answers that were timed",
       "  rayengine bench scenes/sphereflake.json\n"
-      "  rayengine bench bunny.ply koala.obj --tracers embree,embree-bare --json bench.json\n\n"
+      "  rayengine bench bunny.ply koala.obj --tracers embree,embree-bare --json bench.json\n"
+      "  rayengine bench --simulate --csv scheduler.csv\n\n"
       "Tracers take turns; figures are medians and quartile ranges of 9 runs after a warm-up, and errors are those of\n"
       "the answers to 2,048 of the same rays against 'reference'. Rays are the camera's (primary), from what they hit "
       "to\n"
@@ -102,11 +116,14 @@ void add_bench(CLI::App& app, Action& action) {
       "Yardsticks, left out where they cannot hold a scene: embree-bare is plain Embree 3 called on triangles,\n"
       "embree-sphere Embree's own spheres, embree-tess spheres as 512 triangles each.",
       options->common);
-  sub->add_option("SCENE", options->scenes, "Scenes to measure")->type_name("")->required();
+  sub->add_option("SCENE", options->scenes, "Scenes to measure")->type_name("");
   sub->add_option("--tracers", options->tracers, "Tracers and yardsticks, with commas between")->type_name("A,B,...");
   sub->add_option("--precisions", options->precisions, "Precisions to measure each at")->type_name("P,Q,...");
   add_size(sub, options->size, "1024x1024");
   sub->add_option("--json", options->json, "The same as JSON")->type_name("FILE");
+  sub->add_flag("--simulate", options->simulate,
+                "Run the scheduler's policy, and others beside it, on made devices instead of scenes");
+  sub->add_option("--csv", options->csv, "The table of --simulate as CSV")->type_name("FILE");
   sub->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
