@@ -9,7 +9,8 @@ namespace rayengine {
 struct GpuReport {
   GpuInfo info;
   GpuProbe probe;
-  double compile_seconds = 0;  ///< for the intersection shaders of all types of primitives
+  double compile_seconds = 0;  ///< until the shaders for all types of primitives have been compiled and drawn with
+  bool cached = false;         ///< they came from the cache of an earlier run
 };
 
 /// Opens the device (by its number; the best when negative), probes it and compiles. Throws Error when it cannot be

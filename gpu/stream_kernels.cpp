@@ -1,6 +1,6 @@
 #include "gpu/stream_kernels.h"
 
-#include <chrono>
+#include <algorithm>
 
 #include "gpu/kernel_program.h"
 
@@ -14,7 +14,6 @@ static_assert(1 + longest_list * (quadric_type_count + 1) < state_count);
 }  // namespace
 
 StreamKernels::StreamKernels(const SceneTextures& scene, StreamQuery query, const std::vector<std::string>& defines) {
-  const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> all = defines;
   if (query == StreamQuery::any) all.push_back("ANY_HIT");
   const std::string_view ray = "gpu/shaders/stream/ray.glsl";
@@ -23,7 +22,11 @@ StreamKernels::StreamKernels(const SceneTextures& scene, StreamQuery query, cons
   for (const KernelType type : scene.types)
     tests_.push_back(make_kernel_program(type, {ray, "gpu/shaders/stream/nearest.glsl"}, all));
   for (Query& query : tested_) query = make_query(GL_ANY_SAMPLES_PASSED);
-  compile_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool StreamKernels::cached() const {
+  const auto cached = [](const Program& program) { return program.cached(); };
+  return settle_->cached() && select_->cached() && std::all_of(tests_.begin(), tests_.end(), cached);
 }
 
 void StreamKernels::use(const Program& program, std::uint32_t round, std::size_t type) const {

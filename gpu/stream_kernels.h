@@ -25,8 +25,8 @@ class StreamKernels {
   /// device knows by then.
   void run(const StreamBatch& batch, const SceneTextures& scene, std::uint32_t rounds) const;
 
-  /// Seconds that compiling took; little when the programs came from the cache.
-  double compile_seconds() const { return compile_seconds_; }
+  /// Whether all programs came from the cache of an earlier run.
+  bool cached() const;
 
  private:
   void use(const Program& program, std::uint32_t round, std::size_t type) const;
@@ -34,7 +34,6 @@ class StreamKernels {
   void test(std::uint32_t round, std::size_t type, float state) const;
   void test_types(const SceneTextures& scene, std::uint32_t round) const;
 
-  double compile_seconds_ = 0;
   std::optional<Program> settle_, select_;
   std::vector<Program> tests_;              // by type
   std::array<Query, longest_list> tested_;  // by place in the lists: whether any ray was

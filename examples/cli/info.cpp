@@ -53,6 +53,7 @@ Json gpu(const GpuReport& report) {
           {"largest_storage_bytes", g.storage_bytes},
           {"largest_work_group", g.invocations},
           {"compile_s", report.compile_seconds},
+          {"compiled", report.cached ? "in an earlier run" : "now"},
           {"probe", facts}};
 }
 

@@ -5,6 +5,7 @@
 #include "accel/tracer.h"
 #include "gpu/context.h"
 #include "gpu/gpu_report.h"
+#include "tests/temporary.h"
 
 using namespace rayengine;
 
@@ -27,8 +28,13 @@ TEST(Probe, RefusesWhatTracingRestsOn) {
 }
 
 TEST(Probe, ReportsWhatShadersCost) {
-  const GpuReport report = report_on_gpu();
-  EXPECT_GT(report.compile_seconds, 0);
-  EXPECT_FALSE(report.info.renderer.empty());
+  const test::TemporaryFolder cache;
+  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  const GpuReport first = report_on_gpu(), second = report_on_gpu();
+  unsetenv("XDG_CACHE_HOME");
+  EXPECT_GT(first.compile_seconds, 0);
+  EXPECT_FALSE(first.cached);
+  EXPECT_EQ(second.cached, !std::filesystem::is_empty(cache.path()));
+  EXPECT_FALSE(first.info.renderer.empty());
   EXPECT_THROW(report_on_gpu(99), Error);
 }
