@@ -122,11 +122,12 @@ float FloatBox::half_area() const {
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-BinaryBvh build_bvh(std::span<const Box> boxes, std::uint32_t leaf_size) {
+BinaryBvh build_bvh(std::span<const Box> boxes, std::uint32_t leaf_size, const Box& about) {
   BinaryBvh bvh;
   if (boxes.empty()) return bvh;
-  Box all;
-  for (const Box& box : boxes) all.add(box);
+  Box all = about;
+  if (all.empty())
+    for (const Box& box : boxes) all.add(box);
   bvh.frame = LocalFrame(all);
 
   std::vector<FloatBox> local;

@@ -47,8 +47,9 @@ struct BinaryBvh {
 };
 
 /// Builds over finite boxes by Embree's binned surface area heuristic, each box in exactly one leaf, leaves of at most
-/// `leaf_size` (1 to 32) boxes. Throws Error when Embree cannot.
-BinaryBvh build_bvh(std::span<const Box> boxes, std::uint32_t leaf_size);
+/// `leaf_size` (1 to 32) boxes. The frame is that of all boxes, or of `about` where it is not empty: it should be much
+/// the same. Throws Error when Embree cannot.
+BinaryBvh build_bvh(std::span<const Box> boxes, std::uint32_t leaf_size, const Box& about = {});
 
 /// Eight boxes side by side for SIMD. Lanes that are not used hold empty boxes, which no ray meets.
 struct alignas(64) WideNode {

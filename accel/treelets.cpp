@@ -9,6 +9,8 @@ namespace {
 
 constexpr double widest = 0x1p1000;  // what lies farther out would make a frame whose scale has no inverse
 
+bool has_end(const Box& box) { return !box.empty() && box.extent() < widest; }
+
 /// Room for the rounding of the bounds themselves, which are worked out in double.
 Box padded(Box box) {
   const glm::dvec3 pad = 0x1p-48 * glm::max(glm::abs(box.lower), glm::abs(box.upper));
@@ -81,23 +83,32 @@ std::vector<TreeletPrimitive> treelet_primitives(const Geometry& geometry) {
   return result;
 }
 
+Box frame_bounds(const Geometry& geometry) {
+  Box all;
+  for (const glm::uvec3& triangle : geometry.triangles)
+    for (int corner = 0; corner < 3; ++corner) all.add(geometry.vertex(triangle[corner]));
+  for (const Quadric& quadric : geometry.quadrics)
+    if (const Box box = bounds(geometry, quadric); has_end(box)) all.add(box);
+  return all.empty() || has_end(all) ? all : Box{};
+}
+
 std::size_t Treelets::bytes() const {
   return nodes.capacity() * sizeof(WideNode) + treelets.capacity() * sizeof(Treelet) +
          (triangles.capacity() + quadrics.capacity()) * sizeof(std::uint32_t);
 }
 
-Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K) {
+Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K, const Box& about) {
   if (K == 0) throw Error("treelets of no primitives were asked for: K must be 1 or more");
   std::vector<Box> boxes;
   std::vector<std::uint32_t> bounded, unbounded;
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Box& box = primitives[i].bounds;
-    const bool fits = !box.empty() && box.extent() < widest;
+    const bool fits = has_end(box);
     (fits ? bounded : unbounded).push_back(i);
     if (fits) boxes.push_back(box);
   }
 
-  const BinaryBvh bvh = build_bvh(boxes, std::min(K, 8u));
+  const BinaryBvh bvh = build_bvh(boxes, std::min(K, 8u), about);
   const std::vector<std::uint32_t> treelet_of = cut(bvh, K);
   Treelets result;
   result.frame = bvh.frame;

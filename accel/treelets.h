@@ -45,7 +45,12 @@ struct Treelets {
   std::size_t bytes() const;
 };
 
-/// Every primitive lands in exactly one treelet, or in `unbounded`. Throws Error when K is 0, or there is no memory.
-Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K);
+/// The bounds of all in `geometry` that has an end, as exact as its vertices: what a frame is best taken from, since a
+/// scene that is symmetric stays so in it, and rays that hit two primitives at once do so in single precision, too.
+Box frame_bounds(const Geometry& geometry);
+
+/// Every primitive lands in exactly one treelet, or in `unbounded`. The frame is that of the primitives' bounds, or of
+/// `about` where it is not empty. Throws Error when K is 0, or there is no memory.
+Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K, const Box& about = {});
 
 }  // namespace rayengine

@@ -14,10 +14,7 @@ constexpr GLsizei side = 256;
 /// All primitives as one list without bounds, quadrics by type.
 Treelets list_of(const Geometry& g) {
   Treelets list;
-  Box bounds;
-  for (const TreeletPrimitive& p : treelet_primitives(g))
-    if (p.bounds.finite()) bounds.add(p.bounds);
-  list.frame = LocalFrame(bounds);
+  list.frame = LocalFrame(frame_bounds(g));
   list.triangles.resize(g.triangles.size());
   list.quadrics.resize(g.quadrics.size());
   std::iota(list.triangles.begin(), list.triangles.end(), 0u);

@@ -53,7 +53,8 @@ StreamEngine::StreamEngine(std::shared_ptr<const Geometry> geometry, const Strea
       context_(options.device),
       side_(batch_side(options, context_.info())),
       scene_(flatten(std::move(geometry))),
-      treelets_(build_treelets(treelet_primitives(*scene_.geometry), treelet_size(options, context_.info()))),
+      treelets_(build_treelets(treelet_primitives(*scene_.geometry), treelet_size(options, context_.info()),
+                               frame_bounds(*scene_.geometry))),
       list_length_(rayengine::list_length(options, context_.info(), treelets_)),
       textures_(upload(scene_, treelets_, context_.info())) {
   if (treelets_.unbounded.size() > longest_loop)

@@ -72,7 +72,7 @@ class Passes {
   Passes(const Geometry& geometry, std::span<const Ray> rays, std::uint32_t K)
       : scene_{std::make_shared<Geometry>(geometry), std::vector<std::uint32_t>(geometry.triangles.size()),
                std::vector<std::uint32_t>(geometry.quadrics.size())},
-        treelets_(build_treelets(treelet_primitives(geometry), K)),
+        treelets_(build_treelets(treelet_primitives(geometry), K, frame_bounds(geometry))),
         textures_(upload(scene_, treelets_, context_.info())),
         kernels_(textures_, StreamQuery::closest, {}) {
     const auto& all = treelets_.treelets;
@@ -161,7 +161,7 @@ void measure_passes(const char* file, std::uint32_t K) {
 /// Tests that the loop makes: all of every treelet that a ray enters before its nearest hit.
 std::size_t tests_made(const Geometry& geometry, std::span<const Ray> rays, std::span<const Hit> hits,
                        std::uint32_t K) {
-  const Treelets treelets = build_treelets(treelet_primitives(geometry), K);
+  const Treelets treelets = build_treelets(treelet_primitives(geometry), K, frame_bounds(geometry));
   std::size_t tests = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     Ray ray = rays[i];

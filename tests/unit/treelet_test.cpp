@@ -130,4 +130,13 @@ TEST(Treelets, LeaveWhatIsTooFarOutToBeTestedAlways) {
   EXPECT_EQ(t.unbounded.triangle_count, 1u);
 }
 
+TEST(Treelets, KeepTheMiddleOfAScene) {
+  GeometryBuilder builder;  // 5.55 is no number in single precision, which its box holds as well
+  builder.add(Mesh{{{0, 0, 0}, {5.55, 0, 5.55}, {0, 5.55, 0}}, {}, {{0, 1, 2}}});
+  const auto scene = builder.build();
+  const auto primitives = treelet_primitives(*scene);
+  EXPECT_EQ(build_treelets(primitives, 8, frame_bounds(*scene)).frame.center, glm::dvec3(2.775));
+  EXPECT_NE(build_treelets(primitives, 8).frame.center, glm::dvec3(2.775));
+}
+
 TEST(Treelets, RefuseKOfZero) { EXPECT_THROW(build_treelets({}, 0), Error); }
