@@ -91,7 +91,7 @@ void ObjectsBatch::read(Traveller& t, std::size_t i) const {
 }
 
 void ObjectsBatch::read_back(std::span<Traveller> travellers, Context& context) {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[output_].id());
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[1 - output_].id());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_.object.id());
   glReadPixels(0, 0, side_, rows_, half_ ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);

@@ -21,9 +21,10 @@ class ObjectsBatch {
   std::size_t capacity() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
   /// Uploads the rays, and clears the stream. The rest of the last row repeats old rays, whose answers nobody reads.
   void upload(std::span<const Traveller> travellers);
-  /// Makes the stream's last output the input of the next pass.
+  /// Makes the stream's last output the input of the next pass, or of who reads it.
   void turn();
-  /// Waits for the answers and enters them. Throws Error when there is no hope of them, or they mean nothing.
+  /// Waits for the answers, after the last turn, and enters them. Throws Error when there is no hope of them, or they
+  /// mean nothing.
   void read_back(std::span<Traveller> travellers, Context& context);
 
  private:

@@ -28,7 +28,8 @@ Treelets list_of(const Geometry& g) {
 
 Program make_program(KernelType type, Precision precision) {
   if (precision == Precision::half)
-    return make_kernel_program(type, {"gpu/shaders/objects/half.glsl"}, {"OBJECT", "HALF"});
+    return make_kernel_program(type, {"gpu/shaders/objects/packed.glsl", "gpu/shaders/objects/half.glsl"},
+                               {"OBJECT", "HALF"});
   return make_kernel_program(type, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/nearest.glsl"}, {"OBJECT"});
 }
 
@@ -63,7 +64,16 @@ std::vector<ObjectsEngine::Pass> ObjectsEngine::passes() const {
   return result;
 }
 
-void ObjectsEngine::run(std::span<Traveller> travellers) {
+GLsizei ObjectsEngine::batch_side() const { return side; }
+
+Traveller ObjectsEngine::set_out(std::uint32_t index, const Ray& ray) const {
+  Traveller t;
+  t.ray = index;
+  t.frame = in_frame(list_.frame, ray);
+  return t;
+}
+
+void ObjectsEngine::cast(std::span<const Traveller> travellers) {
   glBindVertexArray(vertices_.id());
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   batch_->upload(travellers);
@@ -79,19 +89,16 @@ void ObjectsEngine::run(std::span<Traveller> travellers) {
     glUniform2ui(object_range_location, pass.first, pass.count);
     draw_everywhere();
   }
-  batch_->read_back(travellers, context_);
+  batch_->turn();
 }
 
 void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
   std::vector<Traveller> travellers;
   for (std::size_t next = 0; next < rays.size() || !travellers.empty();) {
     for (; next < rays.size() && travellers.size() < batch_rays(); ++next)
-      if (is_valid(rays[next])) {
-        Traveller& t = travellers.emplace_back();
-        t.ray = static_cast<std::uint32_t>(next);
-        t.frame = in_frame(list_.frame, rays[next]);
-      }
-    run(travellers);
+      if (is_valid(rays[next])) travellers.push_back(set_out(static_cast<std::uint32_t>(next), rays[next]));
+    cast(travellers);
+    batch_->read_back(travellers, context_);
     std::erase_if(travellers, [&](Traveller& t) {
       if (arrive(t) == Next::done) return true;
       look_behind(t);

@@ -25,6 +25,13 @@ class ObjectsEngine : public DeviceEngine {
   std::size_t batch_rays() const override { return batch_->capacity(); }
   std::size_t bytes() const override { return textures_.bytes; }
 
+  GLsizei batch_side() const;
+  Context& context() { return context_; }
+  const LocalFrame& frame() const { return list_.frame; }
+  Traveller set_out(std::uint32_t index, const Ray& ray) const;
+  /// Issues all passes for one batch, after which its rays and nearest hits are bound, to be read on the device.
+  void cast(std::span<const Traveller> travellers);
+
  private:
   /// One object of one type, or a run of a mesh.
   struct Pass {
@@ -33,8 +40,6 @@ class ObjectsEngine : public DeviceEngine {
   };
 
   std::vector<Pass> passes() const;
-  void run(std::span<Traveller> travellers);
-
   Context context_;
   FlatScene scene_;
   Treelets list_;  // all primitives, by type, in no structure

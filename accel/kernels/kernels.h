@@ -66,7 +66,17 @@ KERNEL REAL root(REAL a) {
   }
 }
 
+KERNEL REAL power(REAL a, REAL b) {
+  if constexpr (is_lanes<REAL>) {
+    for (unsigned i = 0; i < sizeof(REAL) / sizeof(a[0]); ++i) a[i] = std::pow(a[i], b[i]);
+    return a;
+  } else {
+    return std::pow(a, b);
+  }
+}
+
 #include "accel/kernels/box.glsl"
+#include "accel/kernels/highlight.glsl"
 #include "accel/kernels/quadric.glsl"
 #include "accel/kernels/triangle.glsl"
 

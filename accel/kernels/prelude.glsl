@@ -10,6 +10,7 @@ bool both(bool a, bool b) { return a && b; }
 bool either(bool a, bool b) { return a || b; }
 float pick(bool condition, float yes, float no) { return condition ? yes : no; }
 float root(float a) { return sqrt(a); }
+float power(float a, float b) { return pow(a, b); }
 float magnitude(float a) { return abs(a); }
 float smaller(float a, float b) { return a < b ? a : b; }
 float larger(float a, float b) { return a > b ? a : b; }

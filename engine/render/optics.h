@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "accel/kernels/kernels.h"
 #include "engine/scene/scene.h"
 
 // Directions have unit length and point along the light's or the ray's way; normals are unit and face the ray that
@@ -24,16 +25,13 @@ inline std::optional<glm::dvec3> refracted(const glm::dvec3& direction, const gl
 }
 
 /// The share of a light's colour that a surface sends to the eye: Lambert's cosine times its own colour, plus a
-/// highlight of the light's colour (Blinn, "Models of light reflection for computer synthesized pictures", 1977).
+/// highlight of the light's colour.
 inline glm::vec3 reflected_light(const Material& m, const glm::vec3& normal, const glm::vec3& to_light,
                                  const glm::vec3& view) {
   const float cosine = glm::dot(normal, to_light);
   glm::vec3 light = m.diffuse * cosine * m.color;
-  if (m.specular > 0) {
-    const glm::vec3 half = to_light + view;
-    const float highlight = glm::dot(normal, half) / glm::length(half);
-    if (highlight > 0) light += m.specular * std::pow(highlight, m.shininess);
-  }
+  const auto vec = [](const glm::vec3& v) { return kernels::Vec3<float>(v.x, v.y, v.z); };
+  if (m.specular > 0) light += m.specular * kernels::highlight(m.shininess, vec(normal), vec(to_light), vec(view));
   return light;
 }
 

@@ -77,7 +77,9 @@ class Passes {
         kernels_(textures_, StreamQuery::closest, {}) {
     const auto& all = treelets_.treelets;
     const auto smaller = [](const Treelet& a, const Treelet& b) { return a.size() < b.size(); };
-    largest_ = static_cast<std::uint32_t>(std::max_element(all.begin(), all.end(), smaller) - all.begin());
+    const auto [least, most] = std::minmax_element(all.begin(), all.end(), smaller);
+    smallest_ = static_cast<std::uint32_t>(least - all.begin());
+    largest_ = static_cast<std::uint32_t>(most - all.begin());
     for (std::size_t i = 0; i < ray_count; ++i) {
       const FrameRay ray = in_frame(treelets_.frame, rays[i]);
       const std::size_t place = batch_.place(i);
@@ -97,12 +99,11 @@ class Passes {
   }
 
   /// Seconds of the last pass of the loop when this share of the rays (at least one) is left: side by side, as the
-  /// tracer sorts them, or anywhere. The passes before it have nothing to test, and are taken off.
+  /// tracer sorts them, or anywhere. The passes before it have next to nothing to test, and are taken off.
   double pass(double share, bool scattered) {
     std::mt19937 random(2);
     std::bernoulli_distribution chosen(share);
-    const glm::uvec4 left(empty_treelet(treelets_), empty_treelet(treelets_), largest_, no_id);
-    const glm::uvec4 done(empty_treelet(treelets_), no_id, no_id, no_id);
+    const glm::uvec4 left(smallest_, smallest_, largest_, no_id), done(smallest_, no_id, no_id, no_id);
     set_lists([&](std::size_t i) {
       return i == 0 || (scattered ? chosen(random) : static_cast<double>(i) < share * ray_count) ? left : done;
     });
@@ -131,7 +132,7 @@ class Passes {
   SceneTextures textures_;
   StreamKernels kernels_;
   StreamBatch batch_{side};
-  std::uint32_t largest_ = 0;
+  std::uint32_t smallest_ = 0, largest_ = 0;  // treelets
 };
 
 void say_what(const char* file, const Geometry& geometry, const GpuInfo& gpu) {

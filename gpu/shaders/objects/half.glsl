@@ -1,12 +1,7 @@
-// The ray and the nearest hit in 16-bit halves. Source: Wood, McCane, King, "Ray Tracing Arbitrary Objects on the GPU" (2004),
-// figures 4 and 5: r, g, b each hold a component of a position and one of a normal (here also of an origin and a direction);
-// a is the object's number in 32 bits. Takes the place of ray.glsl and nearest.glsl.
-layout(binding = 0) uniform usampler2D rays;  // r, g, b: origin and direction; a: tmin and tmax
-layout(binding = 4) uniform usampler2D hits;  // r, g, b: position and normal; a: rank
+// The ray of this fragment and the nearest hit found so far, after packed.glsl: the two take the place of ray.glsl and
+// nearest.glsl.
 layout(location = 4) uniform uvec2 object_range;
 layout(location = 0) out uvec4 result;
-
-const uint none = 0xFFFFFFFFu;
 
 vec3 origin;
 vec3 direction;
@@ -18,14 +13,6 @@ float best_distance;
 uint best_rank;
 
 vec3 best_normal();
-
-void unpack(uvec3 packed_halves, out vec3 low, out vec3 high) {
-  vec2 x = unpackHalf2x16(packed_halves.x);
-  vec2 y = unpackHalf2x16(packed_halves.y);
-  vec2 z = unpackHalf2x16(packed_halves.z);
-  low = vec3(x.x, y.x, z.x);
-  high = vec3(x.y, y.y, z.y);
-}
 
 uvec2 begin() {
   ivec2 at = ivec2(gl_FragCoord.xy);
