@@ -7,17 +7,21 @@
 namespace rayengine {
 namespace {
 
+/// Rays at once to who cuts queries itself: now and then it must be told how far it is.
+constexpr std::size_t most_at_once = std::size_t{1} << 22;
+
 /// Calls body(index of the batch, first ray, count) for every batch.
 template <class Body>
 void for_batches(const Tracer& tracer, std::size_t rays, const RaysDone& done, const Body& body) {
-  const std::size_t size = std::max<std::size_t>(tracer.limits().batch, 1);
+  const Limits limits = tracer.limits();
+  const std::size_t size = limits.cuts ? most_at_once : std::max<std::size_t>(limits.batch, 1);
   const auto batch = [&](std::size_t index) {
     const std::size_t first = index * size, count = std::min(size, rays - first);
     body(index, first, count);
     if (done) done(count);
   };
   const std::size_t batches = (rays + size - 1) / size;
-  if (tracer.limits().concurrent)
+  if (limits.concurrent && !limits.cuts)
     tbb::parallel_for(std::size_t{0}, batches, batch);
   else
     for (std::size_t index = 0; index < batches; ++index) batch(index);

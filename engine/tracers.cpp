@@ -5,6 +5,8 @@
 
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
+#include "engine/hybrid/hybrid_tracer.h"
+#include "gpu/hardware.h"
 #include "gpu/objects_tracer.h"
 #include "gpu/stream_tracer.h"
 
@@ -32,6 +34,27 @@ std::unique_ptr<Tracer> make_objects(std::shared_ptr<const Geometry> geometry, c
   return make_objects_tracer(std::move(geometry), options.precision, options.gpu);
 }
 
+/// Seconds of work after which a GPU is looked for: many times what the looking costs.
+constexpr double auto_patience = 0.25;
+
+std::unique_ptr<Tracer> make_hybrid(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  return make_hybrid_tracer(make_embree(geometry, options), [=] { return make_stream(geometry, options); },
+                            {.threads = options.threads, .say = options.say});
+}
+
+std::unique_ptr<Tracer> make_auto(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  if (!may_have_gpu()) {
+    if (options.say) options.say("this machine has no GPU: the processor works alone");
+    return make_embree(std::move(geometry), options);
+  }
+  const auto make_gpu = [=] {
+    require_hardware(options.gpu);
+    return make_stream(geometry, options);
+  };
+  return make_hybrid_tracer(make_embree(geometry, options), make_gpu,
+                            {.threads = options.threads, .patience = auto_patience, .say = options.say});
+}
+
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
 constexpr std::array stream_precisions{Precision::fast, Precision::robust};
 constexpr std::array objects_precisions{Precision::half, Precision::fast, Precision::robust};
@@ -43,7 +66,8 @@ struct Entry {
   std::span<const Precision> precisions;
 };
 
-/// All tracers there are; the first is `auto`.
+constexpr Entry automatic{{"auto", "the best for this machine"}, make_auto, embree_precisions};
+
 constexpr std::array registry{
     Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
     Entry{{"stream", "GPU: the ray engine, BVH walked by the CPU and tests by intersection shaders"},
@@ -52,6 +76,9 @@ constexpr std::array registry{
     Entry{{"objects", "GPU: Wood, McCane and King's ray caster, one pass an object; for small scenes"},
           make_objects,
           objects_precisions},
+    Entry{{"hybrid", "CPU and GPU: embree and stream answer the same rays together, each what it is faster at"},
+          make_hybrid,
+          embree_precisions},
     Entry{{"reference", "CPU: the oracle, 128-bit floating point; slow, and right"}, make_reference, all_precisions},
 };
 
@@ -63,7 +90,7 @@ std::string list(const Range& range, Name name) {
 }
 
 const Entry& find(std::string_view name) {
-  if (name == "auto") return registry.front();
+  if (name == automatic.info.name) return automatic;
   const auto found =
       std::find_if(registry.begin(), registry.end(), [=](const Entry& e) { return e.info.name == name; });
   if (found != registry.end()) return *found;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +15,8 @@ struct TracerOptions {
   Precision precision = Precision::robust;
   int threads = 0;  ///< 0: as many as the machine has
   int gpu = -1;     ///< an EGL device by its number; the best when negative
+  /// Told, in one line each and from any thread, what became of the GPU where a tracer can do without.
+  std::function<void(const std::string&)> say;
 };
 
 /// Names of all tracers, and one line on each for --help.
@@ -23,8 +26,9 @@ struct TracerInfo {
 };
 std::span<const TracerInfo> tracer_list();
 
-/// Makes a tracer by name; `auto` is the best for this machine. Throws Error on an unknown name or a precision that the
-/// tracer cannot hold, naming those it can.
+/// Makes a tracer by name; `auto` is `embree`, or `hybrid` where there is a GPU that is more than software: one that is
+/// looked for, and tried, when there is enough work to repay that. Throws Error on an unknown name or a precision that
+/// the tracer cannot hold, naming those it can.
 std::unique_ptr<Tracer> make_tracer(std::string_view name, std::shared_ptr<const Geometry> geometry,
                                     const TracerOptions& options = {});
 

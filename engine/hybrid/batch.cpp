@@ -1,0 +1,58 @@
+#include "engine/hybrid/batch.h"
+
+#include <algorithm>
+
+namespace rayengine {
+namespace {
+
+void copy(const Answers& from, const Answers& to) {
+  std::ranges::copy(from.hits, to.hits.begin());
+  std::ranges::copy(from.status, to.status.begin());
+}
+
+}  // namespace
+
+void Batch::add(std::shared_ptr<Job> job, std::size_t first, std::size_t count) {
+  pieces_.push_back({std::move(job), first, count, size_});
+  size_ += count;
+}
+
+void Batch::stage() {
+  rays_.reserve(size_);
+  for (const Piece& piece : pieces_) {
+    const auto from = piece.job->rays.subspan(piece.first, piece.count);
+    rays_.insert(rays_.end(), from.begin(), from.end());
+  }
+  kind_.any ? status_.resize(size_) : hits_.resize(size_);
+  claimed_ = std::make_unique<std::atomic<bool>[]>(blocks());
+}
+
+bool Batch::claim(std::size_t block) {
+  bool open = false;
+  return claimed_[block].compare_exchange_strong(open, true, std::memory_order_acq_rel);
+}
+
+std::size_t Batch::deliver(std::size_t first, std::size_t last, const Answers& answers) {
+  std::size_t delivered = 0;
+  const std::size_t begin = rays_before(first);
+  for (std::size_t b = first; b < last; ++b) {
+    if (!claim(b)) continue;
+    const std::size_t from = rays_before(b), to = rays_before(b + 1);
+    write(from, to, answers.part(from - begin, to - from));
+    delivered += to - from;
+  }
+  return delivered;
+}
+
+void Batch::write(std::size_t first, std::size_t last, const Answers& answers) {
+  auto piece = std::ranges::upper_bound(pieces_, first, {}, &Piece::at) - 1;
+  for (std::size_t i = first; i < last; ++piece) {
+    const std::size_t offset = i - piece->at, count = std::min(last - i, piece->count - offset);
+    Job& job = *piece->job;
+    copy(answers.part(i - first, count), job.answers.part(piece->first + offset, count));
+    job.answered.fetch_add(count, std::memory_order_release);  // from here on its memory may be gone
+    i += count;
+  }
+}
+
+}  // namespace rayengine

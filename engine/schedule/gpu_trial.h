@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+
+namespace rayengine {
+
+/// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone. What sending
+/// costs the processor, in its caches too, is then in the figure, whoever does it and however. A GPU that does not pay
+/// rests, twice as long each time, and is tried again. Pure: told of work done and of the seconds it took.
+class GpuTrial {
+ public:
+  /// Rays answered, and the seconds since the last call in which there was work.
+  void by_crew(std::size_t rays, double seconds);
+  void by_gpu(std::size_t rays, double seconds);
+
+  bool wants_gpu() const { return phase_ != Phase::alone && phase_ != Phase::resting; }
+  bool decided() const { return phase_ == Phase::on || phase_ == Phase::resting; }
+  bool pays() const { return phase_ == Phase::on; }
+
+  double rate_alone() const { return alone_.rate(); }  ///< of the processor without the GPU, rays a second
+  double rate_crew() const { return crew_.rate(); }    ///< of the processor beside it
+  double rate_gpu() const { return gpu_.rate(); }      ///< of the GPU
+  double rate_both() const { return rate_crew() + rate_gpu(); }
+  /// Processor time, in shares of what a ray costs it whole, that each of the GPU's rays took from it.
+  double walk_share() const;
+
+ private:
+  enum class Phase {
+    alone,    ///< the processor is measured
+    waiting,  ///< for the GPU's first answer
+    both,     ///< all are measured
+    on,
+    resting
+  };
+  struct Rate {
+    double rays = 0, seconds = 0;
+    double rate() const { return seconds > 0 ? rays / seconds : 0; }
+  };
+
+  void pass(double seconds);
+  void enter(Phase phase);
+  void decide();
+
+  Phase phase_ = Phase::alone;
+  double in_phase_ = 0, trial_ = 0, rest_ = 0;  ///< seconds
+  int landings_ = 0;
+  Rate alone_, crew_, gpu_;
+};
+
+}  // namespace rayengine

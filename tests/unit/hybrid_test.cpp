@@ -1,0 +1,237 @@
+#include <gtest/gtest.h>
+
+#include <mutex>
+
+#include "engine/hybrid/hybrid_tracer.h"
+#include "engine/measure/rays.h"
+#include "engine/query.h"
+#include "fake_gpu.h"
+#include "render_scenes.h"
+
+namespace rayengine::test {
+namespace {
+
+constexpr double cpu_per_ray = 1e-6;  // of a thread
+constexpr double gpu_per_ray = 1e-7;
+constexpr int threads = 2;
+
+std::shared_ptr<const Geometry> balls() {
+  GeometryBuilder builder;
+  for (int i = 0; i < 27; ++i)
+    builder.add(unit_sphere, 0, Affine::translate({3. * (i % 3), 3. * (i / 3 % 3), 3. * (i / 9)}));
+  return builder.build();
+}
+
+/// A hybrid over a paced processor and a paced GPU, what it said, and the GPU.
+struct Rig {
+  explicit Rig(Fault fault = {}, double latency = 0, double patience = 0) {
+    const HybridOptions options{.threads = threads, .patience = patience, .say = [this](const std::string& text) {
+                                  const std::lock_guard lock(mutex);
+                                  said.push_back(text);
+                                }};
+    const auto make_gpu = [=, this] {
+      auto made = std::make_unique<PacedTracer>(geometry, latency, gpu_per_ray, false, fault);
+      gpu = made.get();
+      return made;
+    };
+    hybrid = make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true), make_gpu, options);
+  }
+
+  std::mutex mutex;
+  std::vector<std::string> said;
+  std::shared_ptr<const Geometry> geometry = balls();
+  std::atomic<PacedTracer*> gpu = nullptr;
+  std::unique_ptr<Hybrid> hybrid;  // last: it says things until it is gone
+};
+
+bool same(const Hit& a, const Hit& b) {
+  return a.t == b.t && a.object == b.object && a.primitive == b.primitive && a.status == b.status;
+}
+
+/// Asks the hybrid, and expects Embree's answers; returns the seconds it took.
+double expect_right(Rig& rig, std::size_t count) {
+  const std::vector<Ray> rays = random_rays(rig.geometry->bounds, count, 5);
+  std::vector<Hit> hits(count), right(count);
+  for (Hit& hit : hits) hit.status = 77;  // nobody's answer
+  const auto start = std::chrono::steady_clock::now();
+  rig.hybrid->closest(rays, hits, RayClass::primary);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  closest(*make_embree_tracer(rig.geometry, Precision::robust), rays, right, RayClass::primary);
+  for (std::size_t i = 0; i < count; ++i)
+    if (!same(hits[i], right[i])) {
+      ADD_FAILURE() << "ray " << i;
+      break;
+    }
+  return seconds;
+}
+
+TEST(Hybrid, SharesRaysAndAnswersThemLikeOneTracer) {
+  Rig rig;
+  const double seconds = expect_right(rig, 400'000);
+  const HybridReport report = rig.hybrid->report();
+  EXPECT_GT(report.gpu_rays, 100'000u);
+  EXPECT_GT(report.cpu_rays, 10'000u);
+  EXPECT_EQ(report.gpu_rays + report.cpu_rays, 400'000u);
+  EXPECT_LT(seconds, 400'000 * cpu_per_ray / threads);  // of the processor alone
+  EXPECT_FALSE(rig.gpu.load()->overlapped());
+  EXPECT_TRUE(rig.said.empty());
+}
+
+TEST(Hybrid, SaysWhyAndHowMuch) {
+  Rig rig;
+  for (int i = 0; i < 3; ++i) expect_right(rig, 300'000);
+  const HybridReport report = rig.hybrid->report();
+  ASSERT_EQ(report.classes.size(), 1u);
+  const HybridClassReport& primary = report.classes[0];
+  EXPECT_EQ(primary.kind, "primary");
+  EXPECT_TRUE(primary.gpu_pays);
+  EXPECT_GT(primary.rate_alone, 0.3 * threads / cpu_per_ray);
+  EXPECT_LT(primary.rate_alone, 1.05 * threads / cpu_per_ray);
+  EXPECT_GT(primary.rate_gpu, primary.rate_crew);
+  EXPECT_GT(primary.gpu_per_ray, 0.9 * gpu_per_ray);
+  EXPECT_LT(primary.gpu_per_ray, cpu_per_ray);
+  EXPECT_GT(primary.bound, primary.rate_alone);
+  EXPECT_NE(report.why.find("pays for primary"), std::string::npos) << report.why;
+}
+
+TEST(Hybrid, AnswersAnyHitAndAllHitsToo) {
+  Rig rig;
+  const std::vector<Ray> rays = random_rays(rig.geometry->bounds, 200'000, 3);
+  std::vector<std::uint32_t> status(rays.size(), 77), right(rays.size());
+  rig.hybrid->any(rays, status, RayClass::shadow);
+  const auto embree = make_embree_tracer(rig.geometry, Precision::robust);
+  any(*embree, rays, right, RayClass::shadow);
+  EXPECT_EQ(status, right);
+  const std::span<const Ray> few = std::span(rays).first(5000);
+  EXPECT_EQ(rig.hybrid->all(few).offsets, all(*embree, few).offsets);
+}
+
+TEST(Hybrid, TakesQueriesFromManyThreads) {
+  Rig rig;
+  std::vector<std::jthread> callers;
+  std::atomic<int> wrong = 0;
+  for (int c = 0; c < 4; ++c)
+    callers.emplace_back([&, c] {
+      const auto embree = make_embree_tracer(rig.geometry, Precision::robust);
+      for (std::size_t count : {1ul, 300ul, 4096ul, 30'000ul, 5000ul}) {
+        const std::vector<Ray> rays = random_rays(rig.geometry->bounds, count, static_cast<std::uint64_t>(c));
+        std::vector<Hit> hits(count), right(count);
+        rig.hybrid->closest(rays, hits, RayClass::bounce);
+        embree->closest(rays, right, RayClass::bounce);
+        for (std::size_t i = 0; i < count; ++i) wrong += !same(hits[i], right[i]);
+      }
+    });
+  callers.clear();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Hybrid, NoRaysNeedNoAnswers) {
+  Rig rig;
+  rig.hybrid->closest({}, {}, RayClass::primary);
+}
+
+TEST(Hybrid, LeavesAGpuThatDoesNotPayAlone) {
+  GeometryBuilder builder;
+  builder.add(unit_sphere);
+  const auto geometry = builder.build();
+  const auto hybrid =
+      make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true),
+                         [&] { return std::make_unique<PacedTracer>(geometry, 0, 1e-4, false); }, {.threads = threads});
+  const std::vector<Ray> rays = random_rays(geometry->bounds, 200'000);
+  std::vector<Hit> hits(rays.size());
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) hybrid->closest(rays, hits, RayClass::primary);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_LT(seconds, 1.5 * 20 * 200'000 * cpu_per_ray / threads);
+  EXPECT_LT(hybrid->report().gpu_rays, 100'000u);
+  EXPECT_NE(hybrid->report().why.find("costs more than it brings"), std::string::npos) << hybrid->report().why;
+}
+
+TEST(Hybrid, GoesOnWithoutAGpuAndSaysSoOnce) {
+  std::vector<std::string> said;
+  const auto geometry = balls();
+  const auto hybrid = make_hybrid_tracer(make_embree_tracer(geometry, Precision::robust),
+                                         []() -> std::unique_ptr<Tracer> { throw Error("none here"); },
+                                         {.say = [&](const std::string& text) { said.push_back(text); }});
+  const std::vector<Ray> rays = random_rays(geometry->bounds, 10'000);
+  std::vector<Hit> hits(rays.size());
+  hybrid->closest(rays, hits, RayClass::primary);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("none here"), std::string::npos);
+  EXPECT_EQ(hybrid->limits().quadric_roundoff,
+            make_embree_tracer(geometry, Precision::robust)->limits().quadric_roundoff);
+}
+
+TEST(Hybrid, LooksForAGpuOnlyWhenThereIsWork) {
+  Rig rig({}, 0, 0.05);
+  expect_right(rig, 1000);
+  EXPECT_EQ(rig.gpu.load(), nullptr);
+  for (int i = 0; i < 10; ++i) expect_right(rig, 100'000);
+  EXPECT_NE(rig.gpu.load(), nullptr);
+  EXPECT_GT(rig.hybrid->report().gpu_rays, 0u);
+}
+
+// Faults. Whatever happens: all answers right, one line said, and no waiting for a device that is away.
+
+TEST(HybridFault, AStallOfSecondsIsNotWaitedFor) {
+  Rig rig({Fault::Kind::stall, 3, 4});
+  EXPECT_LT(expect_right(rig, 1'500'000), 3.0);  // 0.75 s of the processor alone
+  EXPECT_LE(rig.said.size(), 1u);
+}
+
+TEST(HybridFault, ASlowDownByAHundredCostsLittle) {
+  Rig rig({Fault::Kind::slow, 3});
+  EXPECT_LT(expect_right(rig, 400'000), 1.0);
+  EXPECT_LT(expect_right(rig, 400'000), 1.0);
+}
+
+TEST(HybridFault, AnErrorInABatchGivesItsRaysBack) {
+  for (const int batch : {0, 1, 4}) {
+    Rig rig({Fault::Kind::error, batch});
+    for (int i = 0; i < 3; ++i) expect_right(rig, 300'000);
+    ASSERT_EQ(rig.said.size(), 1u);
+    EXPECT_NE(rig.said[0].find("a made error"), std::string::npos);
+    EXPECT_NE(rig.hybrid->report().why.find("failed"), std::string::npos);
+  }
+}
+
+TEST(HybridFault, ALostContextLosesNothing) {
+  Rig rig({Fault::Kind::lost, 2});
+  for (int i = 0; i < 3; ++i) expect_right(rig, 300'000);
+  ASSERT_EQ(rig.said.size(), 1u);
+  EXPECT_NE(rig.said[0].find("context is lost"), std::string::npos);
+}
+
+TEST(HybridFault, AGpuThatIsKilledMeanwhileLosesNothing) {
+  Rig rig({}, 5e-3);
+  std::jthread killer([&] {
+    while (rig.gpu.load()->batches() < 4) std::this_thread::yield();
+    rig.hybrid->lose_gpu();
+  });
+  for (int i = 0; i < 4; ++i) expect_right(rig, 300'000);
+  EXPECT_EQ(rig.said.size(), 1u);
+}
+
+TEST(HybridFault, PicturesAreTheSame) {
+  Scene scene;
+  scene.geometry = balls();
+  scene.materials = {{.color = {1, 0.8f, 0.6f}, .reflect = 0.4f}};
+  scene.lights = {point_light({10, -10, 20})};
+  scene.camera = {.from = {3, -14, 8}, .at = {3, 3, 3}, .up = {0, 0, 1}, .fov = 45, .size = {480, 360}};
+  const auto picture = [&](Fault fault) {
+    Rig rig(fault);
+    std::vector<float> pixels;
+    const RenderResult result = render(scene, *rig.hybrid, {.depth = 3, .threads = threads});
+    for (int y = 0; y < 360; ++y)
+      pixels.insert(pixels.end(), result.image.pixel(0, y), result.image.pixel(0, y) + 4 * 480);
+    EXPECT_GT(rig.gpu.load()->batches(), fault.batch) << static_cast<int>(fault.kind);
+    return pixels;
+  };
+  const std::vector<float> right = picture({});
+  for (const Fault& fault : {Fault{Fault::Kind::stall, 2, 1.0}, Fault{Fault::Kind::slow, 2},
+                             Fault{Fault::Kind::error, 3}, Fault{Fault::Kind::lost, 0}})
+    EXPECT_EQ(picture(fault), right) << static_cast<int>(fault.kind);
+}
+
+}  // namespace
+}  // namespace rayengine::test
