@@ -19,7 +19,8 @@ struct HybridOptions {
 
 /// What a hybrid did with the rays of one kind, and why. Rates in rays a second, other times in seconds.
 struct HybridClassReport {
-  std::string kind;  ///< "primary", "shadow", "bounce", with "any" behind it for any-hit queries
+  std::string kind;      ///< "primary", "shadow", "bounce", with "any" behind it for any-hit queries
+  bool decided = false;  ///< there were enough rays to tell whether the GPU pays
   bool gpu_pays = false;
   double rate_alone = 0;   ///< of the processor without the GPU
   double rate_crew = 0;    ///< of the processor beside it

@@ -225,8 +225,7 @@ void RayPool::close() {
 
 bool RayPool::gpu_in_use(WorkKind kind) const {
   const Lock lock(mutex_);
-  const GpuTrial& trial = trials_[kind.index()];
-  return !lane_.lost && (!trial.decided() || trial.pays());
+  return !lane_.lost && !trials_[kind.index()].resting();
 }
 
 void RayPool::rested(WorkKind kind, std::size_t rays, double seconds) {

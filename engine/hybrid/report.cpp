@@ -13,7 +13,7 @@ std::string name_of(WorkKind kind) {
 HybridClassReport report_on(const RayPool& pool, WorkKind kind, std::size_t threads) {
   const GpuTrial trial = pool.trial(kind);
   const CostModel model = pool.gpu_model(kind);
-  HybridClassReport report{.kind = name_of(kind), .gpu_pays = trial.pays()};
+  HybridClassReport report{.kind = name_of(kind), .decided = trial.decided(), .gpu_pays = trial.pays()};
   report.rate_alone = trial.rate_alone(), report.rate_crew = trial.rate_crew(), report.rate_gpu = trial.rate_gpu();
   report.gpu_latency = model.latency(), report.gpu_per_ray = model.per_ray(), report.walk_share = trial.walk_share();
   if (report.rate_alone == 0 || !model.known()) return report;
@@ -28,7 +28,7 @@ std::string reason(const RayPool& pool, const std::vector<HybridClassReport>& cl
   if (pool.gpu_lost()) return "the GPU failed, and the processor went on alone";
   std::string pays, not_yet, not_at_all;
   for (const HybridClassReport& c : classes) {
-    std::string& list = c.gpu_pays ? pays : c.rate_crew > 0 ? not_at_all : not_yet;
+    std::string& list = c.gpu_pays ? pays : c.decided ? not_at_all : not_yet;
     list += (list.empty() ? "" : ", ") + c.kind;
   }
   std::string text = pays.empty() ? "" : "the GPU pays for " + pays + " rays";

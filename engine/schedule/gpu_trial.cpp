@@ -5,12 +5,13 @@
 namespace rayengine {
 namespace {
 
-constexpr double alone_seconds = 0.02;  // that the processor is measured for at least
-constexpr double both_seconds = 0.05;   // that all are measured for at least
+constexpr double settling = 0.01;       // seconds after a change that are not measured
+constexpr double alone_seconds = 0.02;  // after those, for the processor at least
+constexpr double both_seconds = 0.05;   // for all at least
 constexpr int least_landings = 3;       // of the GPU meanwhile
-constexpr double longest_wait = 1;      // seconds for the GPU's first answer
+constexpr double longest_wait = 1;      // seconds for the GPU's first answers
 constexpr double least_gain = 1.02;     // of the rate of all over that of the processor
-constexpr double first_rest = 50;       // in lengths of the trial: a trial in vain costs 2 % at most
+constexpr double next_trial = 50;       // in lengths of a trial: trials in vain cost 2 % at most
 
 }  // namespace
 
@@ -21,38 +22,54 @@ void GpuTrial::enter(Phase phase) {
   if (phase == Phase::both) crew_ = gpu_ = {}, landings_ = 0;
 }
 
-void GpuTrial::pass(double seconds) {
+bool GpuTrial::measures_alone() const {
+  return (phase_ == Phase::alone || phase_ == Phase::after) && in_phase_ > settling;
+}
+
+void GpuTrial::pass(std::size_t by_crew, double seconds) {
+  const double rays = static_cast<double>(by_crew);
+  if (measures_alone()) alone_.rays += rays, alone_.seconds += seconds;
+  if (phase_ == Phase::both || phase_ == Phase::on)
+    crew_.rays += rays, crew_.seconds += seconds, gpu_.seconds += seconds;
   in_phase_ += seconds;
-  if (phase_ == Phase::waiting || phase_ == Phase::both) trial_ += seconds;
-  if (phase_ == Phase::alone) alone_.seconds += seconds;
-  if (phase_ == Phase::both || phase_ == Phase::on) crew_.seconds += seconds, gpu_.seconds += seconds;
+  trial_ += seconds;
 }
 
 void GpuTrial::by_crew(std::size_t rays, double seconds) {
-  pass(seconds);
-  if (phase_ == Phase::alone) alone_.rays += static_cast<double>(rays);
-  if (phase_ == Phase::both || phase_ == Phase::on) crew_.rays += static_cast<double>(rays);
-  if (phase_ == Phase::alone && in_phase_ >= alone_seconds)
-    enter(Phase::waiting);
-  else if (phase_ == Phase::waiting && in_phase_ >= longest_wait)
-    crew_ = alone_, gpu_ = {}, decide();
-  else if (phase_ == Phase::both && in_phase_ >= std::max(both_seconds, longest_wait) && landings_ < least_landings)
-    decide();
-  else if (phase_ == Phase::resting && in_phase_ >= rest_)
-    enter(Phase::alone);
+  pass(rays, seconds);
+  switch (phase_) {
+    case Phase::alone:
+      if (in_phase_ >= settling + alone_seconds) enter(Phase::waiting);
+      break;
+    case Phase::waiting:
+      if (in_phase_ >= longest_wait) crew_ = alone_, gpu_ = {}, decide();
+      break;
+    case Phase::both:
+      if (in_phase_ >= longest_wait) enter(Phase::after);
+      break;
+    case Phase::after:
+      if (in_phase_ >= settling + alone_seconds) decide();
+      break;
+    case Phase::on:
+    case Phase::resting:
+      if (in_phase_ >= rest_) enter(Phase::alone);
+  }
 }
 
 void GpuTrial::by_gpu(std::size_t rays, double seconds) {
-  pass(seconds);
+  pass(0, seconds);
   if (phase_ == Phase::waiting) return enter(Phase::both);
-  if (phase_ == Phase::both || phase_ == Phase::on) gpu_.rays += static_cast<double>(rays), ++landings_;
-  if (phase_ == Phase::both && in_phase_ >= both_seconds && landings_ >= least_landings) decide();
+  if (phase_ == Phase::after) in_phase_ = 0;  // only now is the processor alone
+  if (phase_ != Phase::both && phase_ != Phase::on) return;
+  gpu_.rays += static_cast<double>(rays), ++landings_;
+  if (phase_ == Phase::both && in_phase_ >= both_seconds && landings_ >= least_landings) enter(Phase::after);
 }
 
 void GpuTrial::decide() {
-  if (rate_both() >= least_gain * rate_alone()) return enter(Phase::on);
-  rest_ = std::max(2 * rest_, first_rest * trial_);
-  enter(Phase::resting);
+  pays_ = rate_both() >= least_gain * rate_alone();
+  rest_ = pays_ ? next_trial * trial_ : std::max(decided_ ? 2 * rest_ : 0, next_trial * trial_);
+  decided_ = true;
+  enter(pays_ ? Phase::on : Phase::resting);
 }
 
 double GpuTrial::walk_share() const {

@@ -4,18 +4,20 @@
 
 namespace rayengine {
 
-/// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone. What sending
-/// costs the processor, in its caches too, is then in the figure, whoever does it and however. A GPU that does not pay
-/// rests, twice as long each time, and is tried again. Pure: told of work done and of the seconds it took.
+/// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone before and
+/// after, since whatever comes first runs on cold caches. What sending costs the processor is then in the figure,
+/// whoever does it and however. A GPU that does not pay rests, twice as long each time, and is tried again; one that
+/// pays is asked to prove it again now and then. Pure: told of work done and of the seconds it took.
 class GpuTrial {
  public:
   /// Rays answered, and the seconds since the last call in which there was work.
   void by_crew(std::size_t rays, double seconds);
   void by_gpu(std::size_t rays, double seconds);
 
-  bool wants_gpu() const { return phase_ != Phase::alone && phase_ != Phase::resting; }
-  bool decided() const { return phase_ == Phase::on || phase_ == Phase::resting; }
-  bool pays() const { return phase_ == Phase::on; }
+  bool wants_gpu() const { return phase_ == Phase::waiting || phase_ == Phase::both || phase_ == Phase::on; }
+  bool decided() const { return decided_; }
+  bool pays() const { return pays_; }
+  bool resting() const { return phase_ == Phase::resting; }
 
   double rate_alone() const { return alone_.rate(); }  ///< of the processor without the GPU, rays a second
   double rate_crew() const { return crew_.rate(); }    ///< of the processor beside it
@@ -29,6 +31,7 @@ class GpuTrial {
     alone,    ///< the processor is measured
     waiting,  ///< for the GPU's first answer
     both,     ///< all are measured
+    after,    ///< the processor is measured again
     on,
     resting
   };
@@ -37,13 +40,15 @@ class GpuTrial {
     double rate() const { return seconds > 0 ? rays / seconds : 0; }
   };
 
-  void pass(double seconds);
+  void pass(std::size_t by_crew, double seconds);
+  bool measures_alone() const;
   void enter(Phase phase);
   void decide();
 
   Phase phase_ = Phase::alone;
   double in_phase_ = 0, trial_ = 0, rest_ = 0;  ///< seconds
   int landings_ = 0;
+  bool decided_ = false, pays_ = false;
   Rate alone_, crew_, gpu_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/schedule/gpu_trial.h"
 #include "engine/schedule/policy.h"
 #include "engine/schedule/split.h"
 
@@ -75,6 +76,58 @@ TEST(Split, IsBoundedByTheGpuOrByTheSending) {
   EXPECT_NEAR(walk_bound.gpu, 4e7, 1);
   EXPECT_NEAR(walk_bound.cpu, 0, 1);
   EXPECT_NEAR(break_even({.walk = 5e-8, .full = 1e-7}, 1e-3), 20000, 1);
+}
+
+/// A millisecond of work at the rates given, rays a second; the GPU brings a batch every 5 ms.
+struct TrialRun {
+  GpuTrial trial;
+  int step = 0;
+  bool cold = true;  ///< at first everything takes twice as long
+
+  void run(int milliseconds, double alone, double crew, double gpu) {
+    for (int i = 0; i < milliseconds; ++i, ++step) {
+      const double rate = (trial.wants_gpu() ? crew : alone) / (cold && step < 10 ? 2 : 1);
+      trial.by_crew(static_cast<std::size_t>(rate * 1e-3), 1e-3);
+      if (trial.wants_gpu() && step % 5 == 0) trial.by_gpu(static_cast<std::size_t>(gpu * 5e-3), 0);
+    }
+  }
+};
+
+TEST(GpuTrial, FindsThatAGpuPays) {
+  TrialRun run;
+  run.run(200, 1e7, 8e6, 2e7);
+  EXPECT_TRUE(run.trial.decided());
+  EXPECT_TRUE(run.trial.pays());
+  EXPECT_NEAR(run.trial.rate_alone(), 1e7, 1e5);
+  EXPECT_NEAR(run.trial.rate_both(), 2.8e7, 2e6);
+  EXPECT_NEAR(run.trial.walk_share(), 0.1, 0.02);
+}
+
+TEST(GpuTrial, IsNotFooledByAColdStart) {
+  TrialRun run;
+  run.run(200, 1e7, 9e6, 1e5);
+  EXPECT_TRUE(run.trial.decided());
+  EXPECT_FALSE(run.trial.pays());
+  EXPECT_TRUE(run.trial.resting());
+}
+
+TEST(GpuTrial, TriesAgainSeldomAndEndsWhatNoLongerPays) {
+  TrialRun run;
+  run.run(200, 1e7, 5e6, 1e6);
+  int wanted = 0;
+  for (int i = 0; i < 20'000; ++i) run.run(1, 1e7, 5e6, 1e6), wanted += run.trial.wants_gpu();
+  EXPECT_GT(wanted, 0);
+  EXPECT_LT(wanted, 400);
+  for (int i = 0; i < 100'000 && !run.trial.pays(); ++i) run.run(1, 1e7, 8e6, 2e7);
+  EXPECT_TRUE(run.trial.pays());
+  for (int i = 0; i < 100'000 && run.trial.pays(); ++i) run.run(1, 1e7, 5e6, 1e6);
+  EXPECT_FALSE(run.trial.pays());
+}
+
+TEST(GpuTrial, WaitsNoLongerThanASecondForAGpuThatIsSilent) {
+  TrialRun run;
+  for (int i = 0; i < 1100; ++i) run.trial.by_crew(10'000, 1e-3);
+  EXPECT_TRUE(run.trial.resting());
 }
 
 TEST(Policy, DrainsAsFastAsAllTogether) {
