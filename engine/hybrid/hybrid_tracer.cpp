@@ -116,7 +116,7 @@ HybridTracer::~HybridTracer() {
 
 void HybridTracer::answer(WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
   RayPool* pool = pool_.load(std::memory_order_acquire);
-  if (pool && pool->gpu_in_use(kind))
+  if (pool && pool->gpu_in_use())
     answer_together(*pool, kind, rays, answers);
   else
     answer_alone(kind, rays, answers);

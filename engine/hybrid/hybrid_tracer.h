@@ -17,26 +17,27 @@ struct HybridOptions {
   std::function<void(const std::string&)> say;
 };
 
-/// What a hybrid did with the rays of one kind, and why. Rates in rays a second, other times in seconds.
+/// What a hybrid measured of rays of one kind. Rates in rays a second, other times in seconds.
 struct HybridClassReport {
-  std::string kind;      ///< "primary", "shadow", "bounce", with "any" behind it for any-hit queries
-  bool decided = false;  ///< there were enough rays to tell whether the GPU pays
-  bool gpu_pays = false;
+  std::string kind;  ///< "primary", "shadow", "bounce", with "any" behind it for any-hit queries
+  std::uint64_t cpu_rays = 0, gpu_rays = 0;
   double rate_alone = 0;   ///< of the processor without the GPU
-  double rate_crew = 0;    ///< of the processor beside it
-  double rate_gpu = 0;     ///< of the GPU
   double gpu_latency = 0;  ///< of a batch
   double gpu_per_ray = 0;  ///< behind it
-  double walk_share = 0;   ///< processor time that a ray on the GPU costs, over that of tracing it
   double break_even = 0;   ///< rays from which on a batch pays
-  double bound = 0;        ///< the best rate that these figures allow (engine/schedule/split.h)
+  double achieved = 0;     ///< of all, in the way that was chosen
+  double bound = 0;        ///< the best that these figures allow (engine/schedule/split.h)
 };
 
 struct HybridReport {
   std::uint64_t cpu_rays = 0, gpu_rays = 0;
   std::uint64_t traced_twice = 0;  ///< rays of the GPU's that the processor traced too
   double scheduling_share = 0;     ///< of the processor's time for tracing
-  std::string why;                 ///< one sentence
+  bool decided = false;            ///< there was enough work to tell whether the GPU pays
+  bool gpu_pays = false;
+  double gain = 0;        ///< rate of all with the GPU over that of the processor alone
+  double walk_share = 0;  ///< what a ray on the GPU cost the processor, over what tracing it costs
+  std::string why;        ///< one sentence
   std::vector<HybridClassReport> classes;
 };
 

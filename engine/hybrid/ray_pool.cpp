@@ -9,6 +9,8 @@ namespace {
 constexpr auto glance = std::chrono::microseconds(200);  // between looks at what has become of others
 constexpr double sending_guess = 0.5;                    // of what tracing costs the processor, while a GPU is unknown
 constexpr std::size_t smallest_gpu_batch = 4096;
+constexpr std::size_t smallest_crew_batch = 1024;
+constexpr double fading = 1;  // seconds of a thread
 
 /// Adds the seconds until it goes to a sum.
 class Stopwatch {
@@ -25,6 +27,7 @@ class Stopwatch {
 
 RayPool::RayPool(std::size_t threads, std::size_t gpu_batch, std::size_t gpu_depth) {
   crew_.threads = std::max<std::size_t>(threads, 1);
+  crew_.smallest = smallest_crew_batch;
   lane_.smallest = std::min(smallest_gpu_batch, gpu_batch);
   lane_.largest = gpu_batch;
   lane_.depth = gpu_depth;
@@ -36,6 +39,20 @@ double RayPool::now() const { return std::chrono::duration<double>(std::chrono::
 double RayPool::busy_since_last() {
   const double last = std::exchange(last_event_, now());
   return last_event_ - last;
+}
+
+/// Old figures fade: the machine may have other things to do by now.
+void RayPool::count_alone(WorkKind kind, std::size_t rays, double seconds) {
+  KindCounts& counts = counts_.kinds[kind.index()];
+  if (counts.alone_seconds > fading) counts.alone_rays /= 2, counts.alone_seconds /= 2;
+  counts.alone_rays += static_cast<double>(rays);
+  counts.alone_seconds += seconds;
+}
+
+/// In the trial's unit.
+double RayPool::work(WorkKind kind, std::size_t rays) const {
+  const double alone = counts_.kinds[kind.index()].alone();
+  return static_cast<double>(rays) * (alone > 0 ? alone : crew_models_[kind.index()].per_ray());
 }
 
 void RayPool::enter(std::shared_ptr<Job> job) {
@@ -93,10 +110,15 @@ std::optional<CrewWork> RayPool::crew_work(const Job& own) {
   return fresh() > 0 ? std::nullopt : from_gpu(own.kind);
 }
 
+/// Without a GPU there is nothing to weigh.
+std::size_t RayPool::crew_rays(WorkKind kind) {
+  return airborne_.empty() && !trial_.wants_gpu() ? crew_.largest : crew_batch(situation(kind));
+}
+
 std::optional<CrewWork> RayPool::from_job(const Job& own) {
   const std::shared_ptr<Job> job = job_with_rays(&own);
   if (!job) return {};
-  const std::size_t rays = std::min(crew_batch(situation(job->kind)), job->fresh());
+  const std::size_t rays = std::min(crew_rays(job->kind), job->fresh());
   if (rays == 0) return {};
   const std::size_t first = job->front;
   job->front += rays;
@@ -135,8 +157,9 @@ void RayPool::crew_done(const CrewWork& work, std::size_t answered) {
   if (const auto end = std::ranges::find(busy_until_, work.due); end != busy_until_.end()) busy_until_.erase(end);
   crew_models_[work.kind.index()].add(work.rays, seconds);
   counts_.crew_seconds += seconds;
-  counts_.by_crew += answered;
-  trials_[work.kind.index()].by_crew(answered, busy_since_last());
+  counts_.kinds[work.kind.index()].by_crew += answered;
+  if (airborne_.empty() && !trial_.wants_gpu()) count_alone(work.kind, work.rays, seconds);
+  trial_.by_crew(this->work(work.kind, answered), busy_since_last());
   if (work.batch || work.job->done()) crew_wakes_.notify_all();  // it may have been another caller's last
   if (lane_.flights.size() < lane_.depth) gpu_wakes_.notify_one();
 }
@@ -146,11 +169,7 @@ void RayPool::wait(const Job& job) {
   if (!job.done()) crew_wakes_.wait_for(lock, glance);
 }
 
-std::shared_ptr<Job> RayPool::job_for_gpu() const {
-  for (const auto& job : jobs_)
-    if (job->fresh() > 0 && trials_[job->kind.index()].wants_gpu()) return job;
-  return {};
-}
+std::shared_ptr<Job> RayPool::job_for_gpu() const { return trial_.wants_gpu() ? job_with_rays(nullptr) : nullptr; }
 
 std::shared_ptr<Batch> RayPool::gpu_work() {
   Lock lock(mutex_);
@@ -200,8 +219,8 @@ void RayPool::landed(const std::shared_ptr<Batch>& batch, std::size_t answered) 
     lane_.flights.erase(lane_.flights.begin() + at);
     airborne_.erase(found);
   }
-  counts_.by_gpu += answered;
-  trials_[batch->kind().index()].by_gpu(answered, busy_since_last());
+  counts_.kinds[batch->kind().index()].by_gpu += answered;
+  trial_.by_gpu(work(batch->kind(), answered), busy_since_last());
   crew_wakes_.notify_all();
 }
 
@@ -223,16 +242,18 @@ void RayPool::close() {
   gpu_wakes_.notify_all();
 }
 
-bool RayPool::gpu_in_use(WorkKind kind) const {
+bool RayPool::gpu_in_use() const {
   const Lock lock(mutex_);
-  return !lane_.lost && !trials_[kind.index()].resting();
+  return !lane_.lost && !trial_.resting();
 }
 
 void RayPool::rested(WorkKind kind, std::size_t rays, double seconds) {
   const Lock lock(mutex_);
-  counts_.by_crew += rays;
+  counts_.kinds[kind.index()].by_crew += rays;
   counts_.crew_seconds += seconds;
-  if (!lane_.lost) trials_[kind.index()].by_crew(rays, seconds / static_cast<double>(crew_.threads));
+  if (lane_.lost) return;
+  count_alone(kind, rays, seconds);
+  trial_.by_crew(work(kind, rays), seconds / static_cast<double>(crew_.threads));
 }
 
 bool RayPool::gpu_lost() const {
@@ -251,9 +272,9 @@ PoolCounts RayPool::counts() const {
   return counts_;
 }
 
-GpuTrial RayPool::trial(WorkKind kind) const {
+GpuTrial RayPool::trial() const {
   const Lock lock(mutex_);
-  return trials_[kind.index()];
+  return trial_;
 }
 
 CostModel RayPool::gpu_model(WorkKind kind) const {

@@ -25,12 +25,19 @@ struct CrewWork {
   WorkKind kind;
 };
 
+/// What was measured of rays of one kind.
+struct KindCounts {
+  std::uint64_t by_crew = 0, by_gpu = 0;     ///< rays answered
+  double alone_rays = 0, alone_seconds = 0;  ///< traced while no GPU was in use, and threads' time for it
+  double alone() const { return alone_rays > 0 ? alone_seconds / alone_rays : 0; }  ///< of a thread, for a ray
+};
+
 /// Counts since the pool was made.
 struct PoolCounts {
-  std::uint64_t by_crew = 0, by_gpu = 0;  ///< rays answered
-  std::uint64_t twice = 0;                ///< rays that both traced
-  double scheduling_seconds = 0;          ///< spent in here, of all threads, waiting left out
-  double crew_seconds = 0;                ///< spent tracing by threads of the processor
+  std::array<KindCounts, WorkKind::count> kinds;
+  std::uint64_t twice = 0;        ///< rays that both traced
+  double scheduling_seconds = 0;  ///< spent in here, of all threads, waiting left out
+  double crew_seconds = 0;        ///< spent tracing by threads of the processor
 };
 
 /// Everybody's rays, handed out by the policy (engine/schedule/policy.h). Thread-safe; it knows the clock, but neither
@@ -64,14 +71,14 @@ class RayPool {
 
   /// Whether queries should go through the pool: the GPU answers or is tried. Else `rested` is to be told of the
   /// seconds spent without it.
-  bool gpu_in_use(WorkKind kind) const;
+  bool gpu_in_use() const;
   void rested(WorkKind kind, std::size_t rays, double seconds);
 
   bool gpu_lost() const;
   /// Seconds by which the oldest batch is past what was expected; 0 when none is.
   double overdue() const;
   PoolCounts counts() const;
-  GpuTrial trial(WorkKind kind) const;
+  GpuTrial trial() const;
   CostModel gpu_model(WorkKind kind) const;
 
  private:
@@ -83,11 +90,14 @@ class RayPool {
 
   double now() const;
   double busy_since_last();
+  void count_alone(WorkKind kind, std::size_t rays, double seconds);
+  double work(WorkKind kind, std::size_t rays) const;
   Situation situation(WorkKind kind);
   std::size_t fresh() const;
   std::shared_ptr<Job> job_with_rays(const Job* own) const;
   std::shared_ptr<Job> job_for_gpu() const;
   CrewWork begin(CrewWork work);
+  std::size_t crew_rays(WorkKind kind);
   std::optional<CrewWork> from_job(const Job& own);
   std::optional<CrewWork> from_orphans();
   std::optional<CrewWork> from_gpu(WorkKind kind);
@@ -100,7 +110,7 @@ class RayPool {
   bool closed_ = false;
   std::deque<std::shared_ptr<Job>> jobs_;
   std::array<CostModel, WorkKind::count> crew_models_, gpu_models_;
-  std::array<GpuTrial, WorkKind::count> trials_;
+  GpuTrial trial_;
   Crew crew_;
   Lane lane_;                       ///< its flights are those of `airborne_`
   std::vector<Airborne> airborne_;  ///< batches that the GPU has, oldest first

@@ -26,17 +26,16 @@ bool GpuTrial::measures_alone() const {
   return (phase_ == Phase::alone || phase_ == Phase::after) && in_phase_ > settling;
 }
 
-void GpuTrial::pass(std::size_t by_crew, double seconds) {
-  const double rays = static_cast<double>(by_crew);
-  if (measures_alone()) alone_.rays += rays, alone_.seconds += seconds;
+void GpuTrial::pass(double by_crew, double seconds) {
+  if (measures_alone()) alone_.work += by_crew, alone_.seconds += seconds;
   if (phase_ == Phase::both || phase_ == Phase::on)
-    crew_.rays += rays, crew_.seconds += seconds, gpu_.seconds += seconds;
+    crew_.work += by_crew, crew_.seconds += seconds, gpu_.seconds += seconds;
   in_phase_ += seconds;
   trial_ += seconds;
 }
 
-void GpuTrial::by_crew(std::size_t rays, double seconds) {
-  pass(rays, seconds);
+void GpuTrial::by_crew(double work, double seconds) {
+  pass(work, seconds);
   switch (phase_) {
     case Phase::alone:
       if (in_phase_ >= settling + alone_seconds) enter(Phase::waiting);
@@ -56,24 +55,26 @@ void GpuTrial::by_crew(std::size_t rays, double seconds) {
   }
 }
 
-void GpuTrial::by_gpu(std::size_t rays, double seconds) {
+void GpuTrial::by_gpu(double work, double seconds) {
   pass(0, seconds);
   if (phase_ == Phase::waiting) return enter(Phase::both);
   if (phase_ == Phase::after) in_phase_ = 0;  // only now is the processor alone
   if (phase_ != Phase::both && phase_ != Phase::on) return;
-  gpu_.rays += static_cast<double>(rays), ++landings_;
+  gpu_.work += work, ++landings_;
   if (phase_ == Phase::both && in_phase_ >= both_seconds && landings_ >= least_landings) enter(Phase::after);
 }
 
 void GpuTrial::decide() {
-  pays_ = rate_both() >= least_gain * rate_alone();
+  // All can gain no more than the GPU does: the rest is what the machine did meanwhile.
+  const double gain = std::min(rate_both(), rate_alone() + rate_gpu());
+  pays_ = gain >= least_gain * rate_alone();
   rest_ = pays_ ? next_trial * trial_ : std::max(decided_ ? 2 * rest_ : 0, next_trial * trial_);
   decided_ = true;
   enter(pays_ ? Phase::on : Phase::resting);
 }
 
 double GpuTrial::walk_share() const {
-  if (gpu_.rays == 0) return 0;
+  if (gpu_.work == 0) return 0;
   return std::max(0.0, (rate_alone() - rate_crew()) / rate_gpu());
 }
 

@@ -1,29 +1,30 @@
 #pragma once
 
-#include <cstddef>
-
 namespace rayengine {
 
 /// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone before and
 /// after, since whatever comes first runs on cold caches. What sending costs the processor is then in the figure,
 /// whoever does it and however. A GPU that does not pay rests, twice as long each time, and is tried again; one that
 /// pays is asked to prove it again now and then. Pure: told of work done and of the seconds it took.
+///
+/// Work counts in seconds that one thread of the processor takes for it when nothing else runs, so that rays of all
+/// kinds can be added.
 class GpuTrial {
  public:
-  /// Rays answered, and the seconds since the last call in which there was work.
-  void by_crew(std::size_t rays, double seconds);
-  void by_gpu(std::size_t rays, double seconds);
+  /// Work done, and the seconds since the last call in which there was any to do.
+  void by_crew(double work, double seconds);
+  void by_gpu(double work, double seconds);
 
   bool wants_gpu() const { return phase_ == Phase::waiting || phase_ == Phase::both || phase_ == Phase::on; }
   bool decided() const { return decided_; }
   bool pays() const { return pays_; }
   bool resting() const { return phase_ == Phase::resting; }
 
-  double rate_alone() const { return alone_.rate(); }  ///< of the processor without the GPU, rays a second
+  double rate_alone() const { return alone_.rate(); }  ///< of the processor without the GPU, work a second
   double rate_crew() const { return crew_.rate(); }    ///< of the processor beside it
   double rate_gpu() const { return gpu_.rate(); }      ///< of the GPU
   double rate_both() const { return rate_crew() + rate_gpu(); }
-  /// Processor time, in shares of what a ray costs it whole, that each of the GPU's rays took from it.
+  /// Work that the processor could not do for each that the GPU did.
   double walk_share() const;
 
  private:
@@ -36,11 +37,11 @@ class GpuTrial {
     resting
   };
   struct Rate {
-    double rays = 0, seconds = 0;
-    double rate() const { return seconds > 0 ? rays / seconds : 0; }
+    double work = 0, seconds = 0;
+    double rate() const { return seconds > 0 ? work / seconds : 0; }
   };
 
-  void pass(std::size_t by_crew, double seconds);
+  void pass(double by_crew, double seconds);
   bool measures_alone() const;
   void enter(Phase phase);
   void decide();

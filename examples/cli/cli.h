@@ -79,6 +79,14 @@ struct LoadedScene {
 /// Loads, and says the scene's notes on stderr, each once.
 LoadedScene load(const std::filesystem::path& file, const Common& common);
 
+/// A tracer by name; what it has to say is noted, now and later.
+struct MadeTracer {
+  std::unique_ptr<Tracer> tracer;
+  std::string said;  ///< while it was made
+};
+MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
+                       const Common& common);
+
 /// One line on stderr, unless quiet: `note: ...`.
 void note(const Common& common, const std::string& text);
 

@@ -132,6 +132,17 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
   return loaded;
 }
 
+MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
+                       const Common& common) {
+  const auto said = std::make_shared<std::string>();
+  const auto say = [=, &common](const std::string& text) {
+    *said = text;
+    note(common, text);
+  };
+  auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say});
+  return {std::move(tracer), *said};
+}
+
 void note(const Common& common, const std::string& text) {
   if (!common.quiet()) std::cerr << "note: " << text << std::endl;
 }

@@ -77,8 +77,9 @@ std::uint64_t total(const RenderStats& stats) {
   return std::accumulate(stats.rays.begin(), stats.rays.end(), std::uint64_t{0});
 }
 
-Json to_json(const Options& o, const Scene& scene, const Tracer& tracer, const RenderStats& stats,
+Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const RenderStats& stats,
              const Seconds& seconds) {
+  const Tracer& tracer = *made.tracer;
   Json rays;
   for (std::size_t kind = 0; kind < stats.rays.size(); ++kind) rays[ray_kinds[kind]] = stats.rays[kind];
   return {{"scene", o.scene.string()},
@@ -98,7 +99,8 @@ Json to_json(const Options& o, const Scene& scene, const Tracer& tracer, const R
           {"bytes", tracer.bytes()},
           {"geometry_bytes", scene.geometry->bytes()},
           {"peak_bytes", peak_memory()},
-          {"shares", device_shares(tracer)},
+          {"shares", device_shares(tracer, made.said)},
+          {"scheduler", scheduler_json(tracer)},
           {"device", device(thread_count(o.common.threads))}};
 }
 
@@ -119,6 +121,8 @@ void say(const Options& o, const Scene& scene, const Tracer& tracer, const Rende
     std::cerr << fmt::format("thread time: tracer {}, shading {}; invalid rays {}\n",
                              seconds_text(stats.tracer_seconds), seconds_text(stats.shading_seconds),
                              stats.invalid_rays);
+  if (const std::string text = scheduler_text(tracer); o.common.verbosity == Verbosity::verbose && !text.empty())
+    std::cerr << text << '\n';
 }
 
 double write(const Options& o, const Image& image) {
@@ -146,11 +150,12 @@ int run(Options& o) {
   if (o.size) scene.camera.size = *o.size;
   check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());
   check_holds(o.output, scene.camera.size.x, scene.camera.size.y);
-  const auto tracer = make_tracer(o.tracer, scene.geometry, {o.precision, o.common.threads, o.common.gpu});
+  const MadeTracer made = make_tracer(o.tracer, scene.geometry, o.precision, o.common);
+  const auto& tracer = made.tracer;
   const RenderResult result = render_with_progress(o, scene, *tracer);
   Seconds seconds{loaded.seconds, tracer->build_seconds(), result.stats.seconds};
   seconds.write = write(o, result.image);
-  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, *tracer, result.stats, seconds));
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, made, result.stats, seconds));
   if (!o.common.quiet()) say(o, scene, *tracer, result.stats, seconds);
   return 0;
 }

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "accel/isa/isa.h"
+#include "engine/hybrid/hybrid_tracer.h"
 #include "engine/load/atomic_file.h"
 #include "engine/tracers.h"
 
@@ -43,11 +46,61 @@ Json device(int threads) {
           {"rayengine", RAYENGINE_VERSION}};
 }
 
-Json device_shares(const Tracer& tracer) {
+Json device_shares(const Tracer& tracer, const std::string& said) {
+  if (const auto* hybrid = dynamic_cast<const Hybrid*>(&tracer)) {
+    const HybridReport report = hybrid->report();
+    const double all = static_cast<double>(std::max<std::uint64_t>(report.cpu_rays + report.gpu_rays, 1));
+    return Json::array(
+        {{{"device", "CPU"}, {"share", static_cast<double>(report.cpu_rays) / all}, {"why", report.why}},
+         {{"device", "GPU"}, {"share", static_cast<double>(report.gpu_rays) / all}, {"why", report.why}}});
+  }
   const std::string where = device_of(tracer);
-  return Json::array({{{"device", where},
-                       {"share", 1.0},
-                       {"why", fmt::format("the tracer '{}' answers every ray on the {}", tracer.name(), where)}}});
+  const std::string why = fmt::format("the tracer '{}' answers every ray on the {}", tracer.name(), where);
+  return Json::array({{{"device", where}, {"share", 1.0}, {"why", said.empty() ? why : said}}});
+}
+
+Json scheduler_json(const Tracer& tracer) {
+  const auto* hybrid = dynamic_cast<const Hybrid*>(&tracer);
+  if (!hybrid) return nullptr;
+  const HybridReport report = hybrid->report();
+  Json classes = Json::array();
+  for (const HybridClassReport& c : report.classes)
+    classes.push_back({{"class", c.kind},
+                       {"cpu_rays", c.cpu_rays},
+                       {"gpu_rays", c.gpu_rays},
+                       {"mrays_per_s_alone", 1e-6 * c.rate_alone},
+                       {"mrays_per_s_achieved", 1e-6 * c.achieved},
+                       {"mrays_per_s_bound", 1e-6 * c.bound},
+                       {"gpu_latency_s", c.gpu_latency},
+                       {"gpu_s_per_ray", c.gpu_per_ray},
+                       {"break_even_rays", c.break_even}});
+  return {{"why", report.why},
+          {"gpu_pays", report.gpu_pays},
+          {"gain", report.gain},
+          {"walk_share", report.walk_share},
+          {"traced_twice", report.traced_twice},
+          {"scheduling_share", report.scheduling_share},
+          {"classes", classes}};
+}
+
+std::string scheduler_text(const Tracer& tracer) {
+  const auto* hybrid = dynamic_cast<const Hybrid*>(&tracer);
+  if (!hybrid) return {};
+  const HybridReport report = hybrid->report();
+  std::string text = fmt::format("{}: CPU {} rays, GPU {}, {} of them traced by both; scheduling {:.2g} % of tracing",
+                                 report.why, count_text(report.cpu_rays), count_text(report.gpu_rays),
+                                 count_text(report.traced_twice), 100 * report.scheduling_share);
+  if (report.decided)
+    text += fmt::format("\n  with the GPU {:.3g} times the rate without; a ray sent costs {:.3g} of one traced",
+                        report.gain, report.walk_share);
+  for (const HybridClassReport& c : report.classes) {
+    text += fmt::format("\n  {}: {:.3g} Mrays/s without the GPU", c.kind, 1e-6 * c.rate_alone);
+    if (c.bound == 0) continue;
+    text += fmt::format(", {:.3g} now, {:.3g} at most; the GPU takes {:.3g} ms + {:.3g} ns a ray, so a batch pays {}",
+                        1e-6 * c.achieved, 1e-6 * c.bound, 1e3 * c.gpu_latency, 1e9 * c.gpu_per_ray,
+                        std::isfinite(c.break_even) ? fmt::format("from {:.0f} rays", c.break_even) : "never");
+  }
+  return text;
 }
 
 std::uint64_t peak_memory() {

@@ -17,8 +17,13 @@ void write_json(const std::filesystem::path& file, const Json& json);
 /// The machine and the program: what figures depend on besides the scene.
 Json device(int threads);
 
-/// The share of rays that each device traced, and why.
-Json device_shares(const Tracer& tracer);
+/// The share of rays that each device traced, and why. `said` is what the tracer told when it was made.
+Json device_shares(const Tracer& tracer, const std::string& said);
+
+/// What a hybrid measured and decided, for each class of rays; null for other tracers.
+Json scheduler_json(const Tracer& tracer);
+/// The same in sentences, a line for each class; empty for other tracers.
+std::string scheduler_text(const Tracer& tracer);
 
 /// The most memory that this process has held, in bytes.
 std::uint64_t peak_memory();

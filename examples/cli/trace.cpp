@@ -91,7 +91,8 @@ struct Figures {
   double rate() const { return static_cast<double>(rays) / trace / 1e6; }
 };
 
-Json to_json(const Options& o, const Geometry& geometry, const Tracer& tracer, const Figures& figures) {
+Json to_json(const Options& o, const Geometry& geometry, const MadeTracer& made, const Figures& figures) {
+  const Tracer& tracer = *made.tracer;
   return {{"scene", o.scene.string()},
           {"tracer", tracer.name()},
           {"precision", to_string(tracer.precision())},
@@ -106,7 +107,8 @@ Json to_json(const Options& o, const Geometry& geometry, const Tracer& tracer, c
           {"bytes", tracer.bytes()},
           {"geometry_bytes", geometry.bytes()},
           {"peak_bytes", peak_memory()},
-          {"shares", device_shares(tracer)},
+          {"shares", device_shares(tracer, made.said)},
+          {"scheduler", scheduler_json(tracer)},
           {"device", device(thread_count(o.common.threads))}};
 }
 
@@ -131,7 +133,8 @@ int run(const Options& o) {
   const std::vector<Ray> rays = read_rays(o.rays);
   const LoadedScene loaded = load(o.scene, o.common);
   const Geometry& geometry = *loaded.scene.geometry;
-  const auto tracer = make_tracer(o.tracer, loaded.scene.geometry, {o.precision, o.common.threads, o.common.gpu});
+  const MadeTracer made = make_tracer(o.tracer, loaded.scene.geometry, o.precision, o.common);
+  const auto& tracer = made.tracer;
   say_rounding(o, geometry, *tracer);
   const auto start = std::chrono::steady_clock::now();
   HitLists lists = ask(o, *tracer, rays);
@@ -140,7 +143,7 @@ int run(const Options& o) {
   write(o, lists);
   Figures figures = count(rays, lists.hits);
   figures.load = loaded.seconds, figures.trace = seconds;
-  if (!o.stats.empty()) write_json(o.stats, to_json(o, geometry, *tracer, figures));
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, geometry, made, figures));
   if (!o.common.quiet())
     std::cerr << fmt::format("{}: {} rays, {} hits, {} invalid, {} ({:.3g} Mrays/s), tracer {}, precision {}\n",
                              o.output.string(), count_text(figures.rays), count_text(figures.hits),

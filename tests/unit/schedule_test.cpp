@@ -78,7 +78,7 @@ TEST(Split, IsBoundedByTheGpuOrByTheSending) {
   EXPECT_NEAR(break_even({.walk = 5e-8, .full = 1e-7}, 1e-3), 20000, 1);
 }
 
-/// A millisecond of work at the rates given, rays a second; the GPU brings a batch every 5 ms.
+/// A millisecond of work at the rates given, in work a second; the GPU brings a batch every 5 ms.
 struct TrialRun {
   GpuTrial trial;
   int step = 0;
@@ -87,8 +87,8 @@ struct TrialRun {
   void run(int milliseconds, double alone, double crew, double gpu) {
     for (int i = 0; i < milliseconds; ++i, ++step) {
       const double rate = (trial.wants_gpu() ? crew : alone) / (cold && step < 10 ? 2 : 1);
-      trial.by_crew(static_cast<std::size_t>(rate * 1e-3), 1e-3);
-      if (trial.wants_gpu() && step % 5 == 0) trial.by_gpu(static_cast<std::size_t>(gpu * 5e-3), 0);
+      trial.by_crew(rate * 1e-3, 1e-3);
+      if (trial.wants_gpu() && step % 5 == 0) trial.by_gpu(gpu * 5e-3, 0);
     }
   }
 };
