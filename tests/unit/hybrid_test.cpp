@@ -214,6 +214,31 @@ TEST(HybridFault, AGpuThatIsKilledMeanwhileLosesNothing) {
   EXPECT_EQ(rig.said.size(), 1u);
 }
 
+/// Queries so small that their callers answer them without TBB, whose threads the thread sanitizer does not understand.
+TEST(HybridFault, ManyCallersGetTheirAnswers) {
+  constexpr std::size_t count = 3000;
+  for (const Fault& fault : {Fault{}, Fault{Fault::Kind::slow, 2}, Fault{Fault::Kind::error, 2},
+                             Fault{Fault::Kind::lost, 4}, Fault{Fault::Kind::stall, 4, 0.3}}) {
+    Rig rig(fault);
+    const std::vector<Ray> rays = random_rays(rig.geometry->bounds, count);
+    std::vector<Hit> right(count);
+    make_embree_tracer(rig.geometry, Precision::robust)->closest(rays, right, RayClass::bounce);
+    std::atomic<int> wrong = 0;
+    std::vector<std::jthread> callers;
+    for (int c = 0; c < 4; ++c)
+      callers.emplace_back([&] {
+        for (int query = 0; query < 40; ++query) {
+          std::vector<Hit> hits(count);
+          rig.hybrid->closest(rays, hits, RayClass::bounce);
+          for (std::size_t i = 0; i < count; ++i) wrong += !same(hits[i], right[i]);
+        }
+      });
+    callers.clear();
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(rig.gpu.load()->batches(), fault.batch);
+  }
+}
+
 TEST(HybridFault, PicturesAreTheSame) {
   Scene scene;
   scene.geometry = balls();
