@@ -352,5 +352,21 @@ TEST_F(CliInfo, NamesTracersAndTheirPrecisions) {
   EXPECT_EQ((*embree)["precisions"], json({"fast", "robust"}));
 }
 
+TEST_F(Cli, PaperCarrWritesItsFourRows) {
+  const test::Outcome outcome = run("paper carr scene.nff -o carr");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::ifstream csv(file("carr/carr.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "row,rays_per_s,scene");
+  std::vector<std::string> rows;
+  while (std::getline(csv, line)) rows.push_back(line.substr(0, line.rfind("\",")));
+  EXPECT_EQ(rows, (std::vector<std::string>{"\"CPU alone", "\"GPU, synchronous read-back",
+                                            "\"GPU, asynchronous read-back", "\"infinitely fast GPU"}));
+  EXPECT_TRUE(std::filesystem::exists(file("carr/carr.md")));
+  const bool drawn = std::filesystem::exists(file("carr/carr.svg"));
+  EXPECT_NE(drawn, outcome.err.find("gnuplot is not installed") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace rayengine
