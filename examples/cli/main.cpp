@@ -82,10 +82,7 @@ void add_subcommands(CLI::App& app, rayengine::cli::Action& action) {
   add_info(app, action);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  catch_signals();
+int answer(int argc, char** argv) {
   CLI::App app("Traces rays through exact quadrics and triangle meshes, to the accuracy that you ask for.",
                "rayengine");
   app.set_version_flag("--version", "rayengine " RAYENGINE_VERSION);
@@ -108,4 +105,15 @@ int main(int argc, char** argv) {
     return report(wrong_usage, "rayengine",
                   "say what to do: render, trace, compare, bench, paper or info (see 'rayengine --help')");
   return run(app, action);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  catch_signals();
+  try {
+    return answer(argc, argv);
+  } catch (const std::exception& error) {
+    return report(failed, "rayengine", error.what());
+  }
 }

@@ -211,6 +211,7 @@ TEST(HybridFault, AGpuThatIsKilledMeanwhileLosesNothing) {
     rig.hybrid->lose_gpu();
   });
   for (int i = 0; i < 4; ++i) expect_right(rig, 300'000);
+  killer.join();
   EXPECT_EQ(rig.said.size(), 1u);
 }
 
