@@ -6,16 +6,19 @@
 #include "accel/isa/walk_kernel.h"
 
 namespace rayengine {
-namespace {
-
-void set_bounds(WalkJob& job, const WideNode& root) {
+WalkSpace walk_space(const Treelets& treelets) {
+  WalkSpace space{};
+  space.nodes = treelets.nodes.data();
+  space.scale = treelets.frame.scale;
+  space.inverse_scale = 1 / space.scale;
+  const WideNode& root = treelets.nodes.front();
   for (int axis = 0; axis < 3; ++axis) {
-    job.lower[axis] = *std::min_element(root.planes[axis][0], root.planes[axis][0] + WideNode::width);
-    job.upper[axis] = *std::max_element(root.planes[axis][1], root.planes[axis][1] + WideNode::width);
+    space.center[axis] = treelets.frame.center[axis];
+    space.lower[axis] = *std::min_element(root.planes[axis][0], root.planes[axis][0] + WideNode::width);
+    space.upper[axis] = *std::max_element(root.planes[axis][1], root.planes[axis][1] + WideNode::width);
   }
+  return space;
 }
-
-}  // namespace
 
 void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std::span<WalkCursor> cursors,
                std::uint32_t capacity, std::span<TreeletEntry> lists, std::span<std::uint32_t> counts) {
@@ -26,12 +29,7 @@ void walk_with(Isa isa, const Treelets& treelets, std::span<const Ray> rays, std
   }
   // A ray may have all lanes of all nodes waiting at once, however unlikely; memory that is not touched costs nothing.
   const auto queue = std::make_unique_for_overwrite<std::uint64_t[]>(treelets.nodes.size() * WideNode::width + 64);
-  WalkJob job{};
-  job.nodes = treelets.nodes.data();
-  job.scale = treelets.frame.scale;
-  job.inverse_scale = 1 / job.scale;
-  for (int axis = 0; axis < 3; ++axis) job.center[axis] = treelets.frame.center[axis];
-  set_bounds(job, treelets.nodes.front());
+  WalkJob job{walk_space(treelets)};
   job.rays = rays.data(), job.ray_count = rays.size();
   job.cursors = cursors.data(), job.capacity = capacity;
   job.lists = lists.data(), job.counts = counts.data(), job.queue = queue.get();

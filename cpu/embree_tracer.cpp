@@ -1,23 +1,18 @@
 #include "cpu/embree_tracer.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <glm/geometric.hpp>
 #include <mutex>
-#include <tuple>
 #include <type_traits>
 
 #include "accel/surface.h"
 #include "cpu/embree_rays.h"
 #include "cpu/embree_scene.h"
+#include "cpu/ranges.h"
 
 namespace rayengine {
 namespace {
-
-constexpr std::size_t grain = 1024;  // rays a task; batches up to this run on the calling thread
 
 /// Embree's answer for one ray.
 struct Answer {
@@ -98,10 +93,6 @@ class EmbreeTracer final : public Tracer {
   RayLoader loader_;
 };
 
-void check_sizes(std::size_t rays, std::size_t answers) {
-  if (rays != answers) throw Error("a query needs as many answers as rays");
-}
-
 /// Primary and shadow rays are coherent as they come.
 bool is_coherent(RayClass ray_class) { return ray_class != RayClass::bounce; }
 
@@ -123,13 +114,6 @@ void for_runs(std::span<const Ray> rays, std::size_t lanes, Together&& together,
     end = std::min(end, rays.size());
     coherent ? together(first, end - first) : alone(first, end - first);
   }
-}
-
-template <class Work>
-void for_ranges(std::size_t count, Work&& work) {
-  if (count <= grain) return work(0, count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + grain - 1) / grain, 1),
-                    [&](const auto& range) { work(range.begin() * grain, std::min(range.end() * grain, count)); });
 }
 
 void EmbreeTracer::set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& level, std::uint32_t object,
@@ -281,25 +265,12 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
     const glm::vec3 normal(glm::normalize(triangle_normal(*level.geometry, e.prim)));
     triangle_hit({0, e.u, e.v, normal, e.geom, e.prim, e.inst}, level, e.t, hit);
   }
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-    return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
-  });
   return hits;
 }
 
 HitLists EmbreeTracer::all(std::span<const Ray> rays) {
   std::call_once(filtering_once_, [&] { filtering_ = std::make_unique<EmbreeScene>(geometry_, precision_, true); });
-  std::vector<std::vector<Hit>> lists(rays.size());
-  for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) lists[i] = all(rays[i]);
-  });
-  HitLists result;
-  result.offsets.push_back(0);
-  for (const auto& list : lists) {
-    result.hits.insert(result.hits.end(), list.begin(), list.end());
-    result.offsets.push_back(result.hits.size());
-  }
-  return result;
+  return all_lists(rays.size(), [&](std::size_t i) { return all(rays[i]); });
 }
 
 }  // namespace

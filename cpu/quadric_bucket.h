@@ -8,18 +8,11 @@
 #include "accel/geometry.h"
 #include "accel/isa/isa.h"
 #include "accel/tracer.h"
+#include "cpu/quadric_kind.h"
 
 namespace rayengine {
 
 inline constexpr int packet_size = 16;
-
-/// What callbacks are made for: every type, and apart from them whole spheres under one scale for all axes.
-inline constexpr int ball_kind = static_cast<int>(quadric_type_count);
-inline constexpr int quadric_kind_count = ball_kind + 1;
-constexpr QuadricType type_of(int kind) {
-  return kind == ball_kind ? QuadricType::sphere : static_cast<QuadricType>(kind);
-}
-int kind_of(const Quadric& quadric);
 
 /// The quadrics of one kind of a geometry: one Embree user geometry, whose callbacks know the kind.
 struct QuadricBucket {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cpu/bvh_tracer.h"
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
 #include "engine/hybrid/hybrid_tracer.h"
@@ -17,6 +18,10 @@ using Maker = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>, const
 
 std::unique_ptr<Tracer> make_embree(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
   return make_embree_tracer(std::move(geometry), options.precision);
+}
+
+std::unique_ptr<Tracer> make_bvh(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  return make_bvh_tracer(std::move(geometry), options.precision);
 }
 
 /// The oracle is exact, so it holds every precision.
@@ -56,6 +61,7 @@ std::unique_ptr<Tracer> make_auto(std::shared_ptr<const Geometry> geometry, cons
 }
 
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
+constexpr std::array bvh_precisions{Precision::robust};
 constexpr std::array stream_precisions{Precision::fast, Precision::robust};
 constexpr std::array objects_precisions{Precision::half, Precision::fast, Precision::robust};
 constexpr std::array all_precisions{Precision::half, Precision::fast, Precision::robust, Precision::certified};
@@ -70,6 +76,7 @@ constexpr Entry automatic{{"auto", "the best for this machine"}, make_auto, embr
 
 constexpr std::array registry{
     Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
+    Entry{{"bvh", "CPU: own traversal and watertight triangles, all in double"}, make_bvh, bvh_precisions},
     Entry{{"stream", "GPU: the ray engine, BVH walked by the CPU and tests by intersection shaders"},
           make_stream,
           stream_precisions},

@@ -9,11 +9,18 @@
 
 namespace rayengine {
 
-/// A call of walk(), in the plain types that code built for several instruction sets may touch.
-struct WalkJob {
+/// A tree of nodes and where it stands, in the plain types that code built for several instruction sets may touch.
+struct WalkSpace {
   const WideNode* nodes;
   double center[3], scale, inverse_scale;  ///< of the local frame
   double lower[3], upper[3];               ///< bounds of all nodes, in the local frame
+};
+
+/// `nodes` must not be empty.
+WalkSpace walk_space(const Treelets& treelets);
+
+/// A call of walk().
+struct WalkJob : WalkSpace {
   const Ray* rays;
   std::size_t ray_count;
   WalkCursor* cursors;

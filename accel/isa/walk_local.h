@@ -75,7 +75,7 @@ static inline void store(float* to, reals value) {
 
 /// Takes up to `packet` rays to the local frame, from `place` on. Branch-free: what rays do here is not to be
 /// predicted.
-static inline void to_local(const WalkJob& job, const Ray* rays, std::size_t count, LocalRays& local, int place) {
+static inline void to_local(const WalkSpace& space, const Ray* rays, std::size_t count, LocalRays& local, int place) {
   reals column[8];
   gather(rays, count, column);
   const reals *origin = column, *direction = column + 4, tmin = column[3], tmax = column[7];
@@ -90,13 +90,13 @@ static inline void to_local(const WalkJob& job, const Ray* rays, std::size_t cou
   const reals stride = power * inverse_power(prescale);
   reals o[3], d[3];
   for (int axis = 0; axis < 3; ++axis) {
-    o[axis] = (origin[axis] - job.center[axis]) * job.scale;
+    o[axis] = (origin[axis] - space.center[axis]) * space.scale;
     d[axis] = direction[axis] * prescale * inverse_power(power);
   }
   const reals slack = float_slack + double_slack * largest(o);
-  reals enter = tmin * job.scale * stride, leave = tmax * job.scale * stride;
+  reals enter = tmin * space.scale * stride, leave = tmax * space.scale * stride;
   for (int axis = 0; axis < 3; ++axis)
-    clip(job.lower[axis] - slack, job.upper[axis] + slack, o[axis], d[axis], enter, leave);
+    clip(space.lower[axis] - slack, space.upper[axis] + slack, o[axis], d[axis], enter, leave);
 
   // From so far that double cannot place the ray in the scene, it meets all of it.
   const integers lost = slack > 1;

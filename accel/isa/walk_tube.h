@@ -77,9 +77,11 @@ static inline bool enclose(LocalRays& rays, Tube& tube) {
   return true;
 }
 
-static inline unsigned meet(const WideNode& node, const Tube& tube) {
+/// A bit for each lane that the tube meets, and where it does at the earliest.
+static inline unsigned meet(const WideNode& node, const Tube& tube, lanes& enter) {
   const lanes zero = all(0), one = all(1);
-  lanes enter = zero, leave = tube.length;
+  enter = zero;
+  lanes leave = tube.length;
   for (int axis = 0; axis < 3; ++axis) {
     const lanes near = multiply_subtract(load(node.planes[axis][tube.near_side[axis]]), one, tube.near_origin[axis]);
     const lanes far = multiply_subtract(load(node.planes[axis][1 - tube.near_side[axis]]), one, tube.far_origin[axis]);
@@ -114,7 +116,8 @@ static inline int find_leaves(const WideNode* nodes, const Tube& tube, WideNode*
   for (int visits = 0; end > 0; ++visits) {
     if (visits == most_visits) return -1;
     const WideNode& node = nodes[waiting[--end]];
-    for (unsigned met = meet(node, tube); met; met &= met - 1) {
+    lanes enter;
+    for (unsigned met = meet(node, tube, enter); met; met &= met - 1) {
       const int lane = __builtin_ctz(met);
       if (!(node.children[lane] & WideNode::leaf)) {
         waiting[end++] = node.children[lane];

@@ -7,32 +7,48 @@ KERNEL VEC3 permuted(VEC3 v, BOOL x_last, BOOL y_last) {
               pick(x_last, v.x, pick(y_last, v.y, v.z)));
 }
 
-// t along o + t d, and the barycentrics u of b and v of c; `hit` is false for degenerate and parallel triangles and for NaN.
-KERNEL void triangle(VEC3 o, VEC3 d, VEC3 a, VEC3 b, VEC3 c, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v, OUT(BOOL) hit) {
+// What a ray brings to all triangles: its largest axis, and the shear (x, y) and length (z) that make it run along it.
+KERNEL void ray_shear(VEC3 d, OUT(BOOL) x_last, OUT(BOOL) y_last, OUT(VEC3) shear) {
   REAL ax = magnitude(d.x);
   REAL ay = magnitude(d.y);
   REAL az = magnitude(d.z);
-  BOOL x_last = both(ax >= ay, ax >= az);
-  BOOL y_last = ay >= az;
+  x_last = both(ax >= ay, ax >= az);
+  y_last = ay >= az;
   VEC3 k = permuted(d, x_last, y_last);
-  REAL sx = k.x / k.z;
-  REAL sy = k.y / k.z;
+  shear = VEC3(k.x / k.z, k.y / k.z, k.z);
+}
+
+// The edge functions of a sheared triangle, its corners' depths, and whether the ray passes inside; not for degenerate and
+// parallel triangles and for NaN.
+KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a, VEC3 b, VEC3 c, OUT(VEC3) w, OUT(VEC3) depth,
+                           OUT(BOOL) hit) {
   VEC3 pa = permuted(VEC3(a.x - o.x, a.y - o.y, a.z - o.z), x_last, y_last);
   VEC3 pb = permuted(VEC3(b.x - o.x, b.y - o.y, b.z - o.z), x_last, y_last);
   VEC3 pc = permuted(VEC3(c.x - o.x, c.y - o.y, c.z - o.z), x_last, y_last);
-  REAL bx = pb.x - sx * pb.z;
-  REAL by = pb.y - sy * pb.z;
-  REAL cx = pc.x - sx * pc.z;
-  REAL cy = pc.y - sy * pc.z;
-  REAL dx = pa.x - sx * pa.z;
-  REAL dy = pa.y - sy * pa.z;
-  REAL wa = cx * by - cy * bx;
-  REAL wb = dx * cy - dy * cx;
-  REAL wc = bx * dy - by * dx;
-  REAL w = (wa + wb) + wc;
-  BOOL inside = either(both(both(wa >= 0, wb >= 0), wc >= 0), both(both(wa <= 0, wb <= 0), wc <= 0));
-  hit = both(inside, w != 0);
-  t = (((wa * pa.z + wb * pb.z) + wc * pc.z) / k.z) / w;
-  u = wb / w;
-  v = wc / w;
+  REAL bx = pb.x - shear.x * pb.z;
+  REAL by = pb.y - shear.y * pb.z;
+  REAL cx = pc.x - shear.x * pc.z;
+  REAL cy = pc.y - shear.y * pc.z;
+  REAL dx = pa.x - shear.x * pa.z;
+  REAL dy = pa.y - shear.y * pa.z;
+  w = VEC3(cx * by - cy * bx, dx * cy - dy * cx, bx * dy - by * dx);
+  depth = VEC3(pa.z, pb.z, pc.z);
+  BOOL inside = either(both(both(w.x >= 0, w.y >= 0), w.z >= 0), both(both(w.x <= 0, w.y <= 0), w.z <= 0));
+  hit = both(inside, (w.x + w.y) + w.z != 0);
+}
+
+// t along the ray, and the barycentrics u of b and v of c, where it hits.
+KERNEL void triangle_crossing(VEC3 shear, VEC3 w, VEC3 depth, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v) {
+  REAL sum = (w.x + w.y) + w.z;
+  t = (((w.x * depth.x + w.y * depth.y) + w.z * depth.z) / shear.z) / sum;
+  u = w.y / sum;
+  v = w.z / sum;
+}
+
+// All of it for one ray and one triangle.
+KERNEL void triangle(VEC3 o, VEC3 d, VEC3 a, VEC3 b, VEC3 c, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v, OUT(BOOL) hit) {
+  BOOL x_last; BOOL y_last; VEC3 shear; VEC3 w; VEC3 depth;
+  ray_shear(d, x_last, y_last, shear);
+  triangle_edges(o, x_last, y_last, shear, a, b, c, w, depth, hit);
+  triangle_crossing(shear, w, depth, t, u, v);
 }

@@ -27,14 +27,14 @@ INLINE REAL splat(double a) {
 }
 
 template <class REAL, class T>
-INLINE REAL load(const T* from) {
+INLINE REAL read(const T* from) {
   REAL result;
   __builtin_memcpy(&result, from, sizeof result);
   return result;
 }
 
 template <class REAL, class T>
-INLINE void store(T* to, const REAL& value) {
+INLINE void write(T* to, const REAL& value) {
   __builtin_memcpy(to, &value, sizeof value);
 }
 

@@ -14,25 +14,25 @@ typedef double Four __attribute__((vector_size(32)));
 
 /// Writes four fields of four rays, which lie 8 doubles apart, as four rows of four.
 INLINE void transpose(const double* rays, double* row0, double* row1, double* row2, double* row3) {
-  const Four a = load<Four>(rays), b = load<Four>(rays + 8), c = load<Four>(rays + 16), d = load<Four>(rays + 24);
+  const Four a = read<Four>(rays), b = read<Four>(rays + 8), c = read<Four>(rays + 16), d = read<Four>(rays + 24);
   const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  store(row0, __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5));
-  store(row1, __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5));
-  store(row2, __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7));
-  store(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
+  write(row0, __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5));
+  write(row1, __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5));
+  write(row2, __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7));
+  write(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
 }
 
 INLINE Doubles absolute_sum(const double* x, const double* y, const double* z) {
-  return (kernels::magnitude(load<Doubles>(x)) + kernels::magnitude(load<Doubles>(y))) +
-         kernels::magnitude(load<Doubles>(z));
+  return (kernels::magnitude(read<Doubles>(x)) + kernels::magnitude(read<Doubles>(y))) +
+         kernels::magnitude(read<Doubles>(z));
 }
 
 INLINE bool all_ordinary(const OrdinaryRays& ordinary, const QuadricContext& c, const double* tmax, int lanes) {
   auto odd = Doubles{} != Doubles{};
   for (int i = 0; i < lanes; i += width) {
     const Doubles o = absolute_sum(c.ox + i, c.oy + i, c.oz + i), d = absolute_sum(c.dx + i, c.dy + i, c.dz + i);
-    const Doubles from = load<Doubles>(c.tmin + i), to = load<Doubles>(tmax + i);
+    const Doubles from = read<Doubles>(c.tmin + i), to = read<Doubles>(tmax + i);
     odd |=
         ~((o <= ordinary.farthest) & (d >= ordinary.shortest) & (d <= ordinary.longest) & (from >= 0) & (from <= to));
   }
@@ -40,19 +40,19 @@ INLINE bool all_ordinary(const OrdinaryRays& ordinary, const QuadricContext& c, 
 }
 
 INLINE void convert(const double* from, float* to, int lanes) {
-  for (int i = 0; i < lanes; i += width) store(to + i, __builtin_convertvector(load<Doubles>(from + i), Floats));
+  for (int i = 0; i < lanes; i += width) write(to + i, __builtin_convertvector(read<Doubles>(from + i), Floats));
 }
 
 /// Non-negative bounds as floats, rounded down or up by `step` = -1 or 1 units in the last place where they are not
 /// exact.
 INLINE void convert_outward(const double* from, float* to, int lanes, int step) {
   for (int i = 0; i < lanes; i += width) {
-    const Doubles exact = load<Doubles>(from + i);
+    const Doubles exact = read<Doubles>(from + i);
     const Floats f = __builtin_convertvector(exact, Floats);
     const Doubles back = __builtin_convertvector(f, Doubles);
     const auto inside = step > 0 ? back < exact : back > exact;
     const Ints moved = (Ints)f + (__builtin_convertvector(inside, Ints) & step);
-    store(to + i, (Floats)moved);
+    write(to + i, (Floats)moved);
   }
 }
 
@@ -60,9 +60,9 @@ INLINE void convert_outward(const double* from, float* to, int lanes, int step) 
 INLINE void next_above(const double* from, double* to, int lanes) {
   typedef long long Bits __attribute__((vector_size(ISA_BYTES)));
   for (int i = 0; i < lanes; i += width) {
-    const Doubles a = load<Doubles>(from + i);
+    const Doubles a = read<Doubles>(from + i);
     const Bits finite = a < __builtin_inf();
-    store(to + i, (Bits)a - finite);  // a mask is -1 where it holds
+    write(to + i, (Bits)a - finite);  // a mask is -1 where it holds
   }
 }
 
@@ -86,10 +86,10 @@ bool load_packet(const OrdinaryRays& ordinary, const Ray* rays, int lanes, Quadr
   convert_outward(tmax, soa + 8 * lanes, lanes, 1);
   next_above(tmax, c.nearest, lanes);
   for (int i = 0; i < lanes; i += width) {
-    store(c.object + i, Doubles{});
-    store(c.shift + i, Doubles{});
-    store(c.rate + i, splat<Doubles>(1));
-    store(c.scale + i, splat<Doubles>(1));
+    write(c.object + i, Doubles{});
+    write(c.shift + i, Doubles{});
+    write(c.rate + i, splat<Doubles>(1));
+    write(c.scale + i, splat<Doubles>(1));
   }
   return true;
 }

@@ -38,12 +38,20 @@ class Equivalence : public testing::TestWithParam<std::tuple<const char*, Case>>
     return triangles && std::get<const char*>(GetParam()) == std::string("embree") ? rays / 400 : 0;
   }
 };
+std::string name_of(const testing::TestParamInfo<Equivalence::ParamType>& info) {
+  return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
+}
 INSTANTIATE_TEST_SUITE_P(Tracers, Equivalence,
+                         testing::Combine(testing::Values("embree", "bvh", "stream", "objects"),
+                                          testing::ValuesIn(test::all_cases())),
+                         name_of);
+
+/// Those that also compute in single precision.
+class FastEquivalence : public Equivalence {};
+INSTANTIATE_TEST_SUITE_P(Tracers, FastEquivalence,
                          testing::Combine(testing::Values("embree", "stream", "objects"),
                                           testing::ValuesIn(test::all_cases())),
-                         [](const auto& info) {
-                           return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
-                         });
+                         name_of);
 
 std::string describe(const Comparison& c, std::span<const Ray> rays, Tracer& tracer, Tracer& oracle) {
   std::string text = std::to_string(c.wrong_ids) + " wrong ids, " + std::to_string(c.false_hits) + " false hits, " +
@@ -79,7 +87,7 @@ TEST_P(Equivalence, RobustOnAimedRays) {
   expect_equivalent(Precision::robust, aimed_rays(geometry(), 1500), RayClass::bounce, leaks(1500));
 }
 
-TEST_P(Equivalence, FastOnRandomRays) {
+TEST_P(FastEquivalence, OnRandomRays) {
   expect_equivalent(Precision::fast, random_rays(geometry().bounds, 1500, 2), RayClass::bounce);
 }
 

@@ -31,14 +31,20 @@ const Touch touches[] = {
 };
 
 class Tangent : public testing::TestWithParam<std::tuple<const char*, Precision, Touch>> {};
+
+std::string name_of(const testing::TestParamInfo<Tangent::ParamType>& info) {
+  const std::string precision(to_string(std::get<Precision>(info.param)));
+  return std::get<0>(info.param) + ("_" + precision + "_") + std::get<Touch>(info.param).name;
+}
 INSTANTIATE_TEST_SUITE_P(Tracers, Tangent,
                          testing::Combine(testing::Values("reference", "embree", "stream", "objects"),
                                           testing::Values(Precision::fast, Precision::robust),
                                           testing::ValuesIn(touches)),
-                         [](const auto& info) {
-                           const std::string precision(to_string(std::get<Precision>(info.param)));
-                           return std::get<0>(info.param) + ("_" + precision + "_") + std::get<Touch>(info.param).name;
-                         });
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(InDouble, Tangent,
+                         testing::Combine(testing::Values("bvh"), testing::Values(Precision::robust),
+                                          testing::ValuesIn(touches)),
+                         name_of);
 
 TEST_P(Tangent, IsAMiss) {
   const auto& [name, precision, touch] = GetParam();

@@ -1,0 +1,66 @@
+#include "cpu/bvh_scene.h"
+
+#include "cpu/quadric_kind.h"
+
+namespace rayengine {
+namespace {
+
+constexpr std::uint32_t width = TriangleBlock<float>::width;
+
+/// Triangles are tested a block at a time, quadrics one by one.
+std::uint32_t leaf_size(const Geometry& geometry) {
+  return geometry.triangles.size() > geometry.quadrics.size() ? width : 1;
+}
+
+}  // namespace
+
+BvhLeaf BvhScene::leaf(const Treelet& treelet, std::uint32_t& blocks) const {
+  const BvhLeaf leaf{blocks, treelet.triangle_count, treelet.first_quadric, treelet.quadric_count};
+  blocks += (treelet.triangle_count + width - 1) / width;
+  return leaf;
+}
+
+template <class T>
+void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
+  const BvhLeaf& last = leaves_.back();
+  blocks.resize(last.first_block + (last.triangle_count + width - 1) / width);
+  const std::uint32_t* id = treelets_.triangles.data();
+  for (const BvhLeaf& leaf : leaves_) {
+    for (std::uint32_t i = 0; i < leaf.triangle_count; ++i, ++id) {
+      TriangleBlock<T>& block = blocks[leaf.first_block + i / width];
+      block.id[i % width] = *id;
+      for (int corner = 0; corner < 3; ++corner) {
+        const glm::dvec3 p = geometry_->vertex(geometry_->triangles[*id][corner]);
+        for (int axis = 0; axis < 3; ++axis) block.corners[corner][axis][i % width] = static_cast<T>(p[axis]);
+      }
+    }
+  }
+}
+
+BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry) : geometry_(std::move(geometry)) {
+  treelets_ = build_treelets(treelet_primitives(*geometry_), leaf_size(*geometry_), frame_bounds(*geometry_));
+  std::uint32_t blocks = 0;
+  for (const Treelet& treelet : treelets_.treelets) leaves_.push_back(leaf(treelet, blocks));
+  leaves_.push_back(leaf(treelets_.unbounded, blocks));
+  const bool exact = geometry_->exact_vertices.empty();
+  exact ? fill(float_blocks_) : fill(double_blocks_);
+  for (const std::uint32_t i : treelets_.quadrics)
+    kinds_.push_back(static_cast<std::uint8_t>(kind_of(geometry_->quadrics[i])));
+
+  if (!treelets_.treelets.empty()) static_cast<WalkSpace&>(job_) = walk_space(treelets_);
+  job_.geometry = geometry_.get();
+  job_.leaves = leaves_.data();
+  job_.unbounded = treelets_.unbounded.size() ? &leaves_.back() : nullptr;
+  job_.float_blocks = exact ? float_blocks_.data() : nullptr;
+  job_.double_blocks = exact ? nullptr : double_blocks_.data();
+  job_.quadrics = treelets_.quadrics.data();
+  job_.kinds = kinds_.data();
+}
+
+std::size_t BvhScene::bytes() const {
+  return treelets_.bytes() + leaves_.capacity() * sizeof(BvhLeaf) +
+         float_blocks_.capacity() * sizeof(TriangleBlock<float>) +
+         double_blocks_.capacity() * sizeof(TriangleBlock<double>) + kinds_.capacity();
+}
+
+}  // namespace rayengine

@@ -1,0 +1,189 @@
+// One ray through the BVH: eight boxes at a time, and as many triangles as there are lanes of double.
+
+#include "cpu/isa/bvh_state.inl"
+
+namespace rayengine::ISA {
+#include "accel/isa/walk_lanes.h"
+
+namespace {
+
+using Reals = Lanes<double>;
+constexpr int reals_count = lane_count<Reals>;
+constexpr int most_waiting = 256 * WideNode::width;  // no binary tree of build_bvh is deeper
+
+template <class T>
+INLINE Reals load_reals(const T* from) {
+  typedef T Part __attribute__((vector_size(sizeof(T) * reals_count)));
+  return __builtin_convertvector(read<Part>(from), Reals);
+}
+
+template <class T>
+INLINE Vec3<Reals> corners(const TriangleBlock<T>& block, int corner, std::uint32_t place) {
+  const auto& c = block.corners[corner];
+  return {load_reals(c[0] + place), load_reals(c[1] + place), load_reals(c[2] + place)};
+}
+
+INLINE kernels::Mask<Reals> mask_of(bool value) { return splat<Reals>(value ? 1 : 0) > 0; }
+
+/// One ray against several triangles at once; then those that it crosses, of which there are few, one by one.
+template <class T, class Take>
+INLINE void cross_triangles(const TriangleBlock<T>* blocks, std::uint32_t count, const State<double>& s, Take&& take) {
+  const auto& [o, d, tmin, nearest, object, active] = s.rays;
+  const Sheared<double>& h = s.sheared;
+  const Vec3<Reals> from{splat<Reals>(o.x), splat<Reals>(o.y), splat<Reals>(o.z)};
+  const Sheared<Reals> sheared{mask_of(h.x_last),
+                               mask_of(h.y_last),
+                               {splat<Reals>(h.shear.x), splat<Reals>(h.shear.y), splat<Reals>(h.shear.z)}};
+  for (std::uint32_t i = 0; i < count; i += reals_count) {
+    const TriangleBlock<T>& block = blocks[i / TriangleBlock<T>::width];
+    const std::uint32_t place = i % TriangleBlock<T>::width;
+    const Crossing<Reals> x = cross(from, sheared, corners(block, 0, place), corners(block, 1, place),
+                                    corners(block, 2, place), splat<Reals>(tmin), mask_of(true));
+    for (unsigned hit = lanes_of(x.hit); hit; hit &= hit - 1) {
+      const int lane = __builtin_ctz(hit);
+      take(Crossing<double>{x.t[lane], x.u[lane], x.v[lane], true}, block.id[place + static_cast<unsigned>(lane)]);
+    }
+  }
+}
+
+template <bool any, class T>
+INLINE bool test_triangles_alone(const BvhJob& job, const TriangleBlock<T>* blocks, std::uint32_t count,
+                                 State<double>& s) {
+  bool hit = false;
+  cross_triangles(blocks, count, s, [&](const Crossing<double>& x, std::uint32_t id) {
+    const double object = job.geometry->triangle_object.data()[id];
+    if (!comes_first<double>(s, x, object, id)) return;
+    hit = true;
+    if (!any) take<double>(s, x, true, object, id);
+  });
+  return hit;
+}
+
+template <bool any>
+INLINE bool test_leaf_alone(const BvhJob& job, const BvhLeaf& leaf, State<double>& s) {
+  bool hit = false;
+  if (leaf.quadric_count) hit = test_quadrics<any>(job, leaf, s);
+  if (!leaf.triangle_count) return hit;
+  if (job.float_blocks)
+    return test_triangles_alone<any>(job, job.float_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
+  return test_triangles_alone<any>(job, job.double_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
+}
+
+/// Brings the end of ray k of a group to a hit at t, rounded up by what placing the ray in the local frame may err.
+INLINE void shorten(const BvhJob& job, LocalRays& local, int k, double t) {
+  const double length = (t * job.scale * local.stride[k] - local.t0[k]) * (1 + 0x1p-20) + local.slack[k];
+  if (length < local.length[k]) local.length[k] = static_cast<float>(length);
+}
+
+/// Puts a node's children that the ray meets on the stack, the nearest on top.
+INLINE std::uint64_t* push_children(const WideNode& node, const LocalRay& ray, std::uint64_t* top) {
+  alignas(32) float entries[WideNode::width];
+  std::uint64_t* const bottom = top;
+  for (unsigned met = meet(node, ray, all(0), entries); met; met &= met - 1) {
+    const int lane = __builtin_ctz(met);
+    const std::uint64_t key = key_of(entries[lane], node.children[lane]);
+    std::uint64_t* at = top++;
+    for (; at != bottom && at[-1] < key; --at) *at = at[-1];
+    *at = key;
+  }
+  return top;
+}
+
+/// Traces ray k of a group from `child` on. `at_leaf` answers whether the ray may end there.
+template <class AtLeaf>
+INLINE void descend(const BvhJob& job, LocalRays& local, int k, std::uint32_t child, AtLeaf&& at_leaf) {
+  std::uint64_t stack[most_waiting];
+  stack[0] = key_of(0, child);
+  LocalRay ray(local, k);
+  for (std::uint64_t* top = stack + 1; top != stack;) {
+    const std::uint64_t key = *--top;
+    if (entry_of(key) > local.length[k]) continue;
+    const std::uint32_t next = static_cast<std::uint32_t>(key);
+    if (!(next & WideNode::leaf)) {
+      top = push_children(job.nodes[next], ray, top);
+    } else {
+      if (at_leaf(job.leaves[next ^ WideNode::leaf])) return;
+      ray.length = ISA::all(local.length[k]);
+    }
+  }
+}
+
+/// Whether the ray was hit nearer than before.
+template <bool any>
+bool trace_alone(const BvhJob& job, LocalRays& local, int k, std::uint32_t child, State<double>& s) {
+  bool hit = false;
+  descend(job, local, k, child, [&](const BvhLeaf& leaf) {
+    if (!test_leaf_alone<any>(job, leaf, s)) return false;
+    hit = true;
+    if (!any) shorten(job, local, k, s.rays.nearest);
+    return any;
+  });
+  return hit;
+}
+
+template <class T>
+INLINE void collect_triangles(const TriangleBlock<T>* blocks, std::uint32_t count, const State<double>& s,
+                              CollectAnswer collect, void* to) {
+  cross_triangles(blocks, count, s, [&](const Crossing<double>& x, std::uint32_t id) {
+    if (x.t < s.rays.nearest)
+      collect(to, {x.t, id, BvhAnswer::triangle, static_cast<float>(x.u), static_cast<float>(x.v)});
+  });
+}
+
+template <int kind>
+void all_crossings(const Geometry& geometry, const Quadric& quadric, const Rays<double>& rays,
+                   Crossings<double>& found) {
+  found = crossings<kind>(geometry, quadric, rays);
+}
+template <int... kind>
+INLINE void cross_quadric(int which, const Geometry& geometry, const Quadric& quadric, const Rays<double>& rays,
+                          Crossings<double>& found, std::integer_sequence<int, kind...>) {
+  ((which == kind ? all_crossings<kind>(geometry, quadric, rays, found) : void()), ...);
+}
+
+INLINE void collect_quadrics(const BvhJob& job, const BvhLeaf& leaf, const State<double>& s, CollectAnswer collect,
+                             void* to) {
+  for (std::uint32_t i = leaf.first_quadric; i < leaf.first_quadric + leaf.quadric_count; ++i) {
+    Crossings<double> c;
+    cross_quadric(job.kinds[i], *job.geometry, job.geometry->quadrics.data()[job.quadrics[i]], s.rays, c,
+                  std::make_integer_sequence<int, quadric_kind_count>());
+    const double t[4] = {c.near, c.far, c.lower_cap, c.upper_cap};
+    for (std::uint32_t k = 0; k < 4; ++k)
+      if (t[k] > s.rays.tmin && t[k] < s.rays.nearest && t[k] < std::numeric_limits<double>::max())
+        collect(to, {t[k], job.quadrics[i], k < 2 ? 0 : k - 1, 0, 0});
+  }
+}
+
+INLINE void collect_leaf(const BvhJob& job, const BvhLeaf& leaf, const State<double>& s, CollectAnswer collect,
+                         void* to) {
+  collect_quadrics(job, leaf, s, collect, to);
+  if (job.float_blocks) collect_triangles(job.float_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
+  if (job.double_blocks) collect_triangles(job.double_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
+}
+
+INLINE State<double> begin_alone(const Ray& ray) {
+  State<double> s;
+  const auto& [o, tmin, d, tmax] = ray;
+  s.rays.o = {o.x, o.y, o.z};
+  s.rays.d = {d.x, d.y, d.z};
+  s.rays.tmin = tmin, s.rays.nearest = just_above(tmax);
+  s.rays.active = true;
+  begin(s);
+  return s;
+}
+
+void all_hits(const BvhJob& job, const Ray& ray, CollectAnswer collect, void* to) {
+  const State<double> s = begin_alone(ray);
+  if (job.unbounded) collect_leaf(job, *job.unbounded, s, collect, to);
+  if (!job.nodes) return;
+  LocalRays local;
+  to_local(job, &ray, 1, local, 0);
+  if (!local.alive[0]) return;
+  descend(job, local, 0, 0, [&](const BvhLeaf& leaf) {
+    collect_leaf(job, leaf, s, collect, to);
+    return false;
+  });
+}
+
+}  // namespace
+}  // namespace rayengine::ISA
