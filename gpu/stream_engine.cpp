@@ -17,7 +17,7 @@ constexpr std::size_t block = 256;  // rays that are walked together
 
 /// Where single precision is tested in software, tests are dear and lists cheap.
 std::uint32_t treelet_size(const StreamOptions& options, const GpuInfo& gpu) {
-  return std::min(options.treelet_size ? options.treelet_size : gpu.software ? 8 : 512, longest_loop);
+  return std::min(options.treelet_size ? options.treelet_size : gpu.software ? 16 : 512, longest_loop);
 }
 
 GLsizei batch_side(const StreamOptions& options, const GpuInfo& gpu) {
@@ -25,10 +25,11 @@ GLsizei batch_side(const StreamOptions& options, const GpuInfo& gpu) {
   return std::min(wanted, gpu.texture_size) / 4 * 4;
 }
 
-/// Rays that are done leave holes among those that are not: where shading is dear, short lists let them close up
+/// Rays that are done leave holes among those that are not: where passes are dear, short lists let them close up
 /// sooner.
 std::uint32_t list_length(const StreamOptions& options, const GpuInfo& gpu, const Treelets& treelets) {
-  const std::uint32_t wanted = options.list_length ? options.list_length : gpu.software ? 2 : longest_list;
+  const bool dear = gpu.software && treelet_size(options, gpu) >= 64;
+  const std::uint32_t wanted = options.list_length ? options.list_length : dear ? 2 : longest_list;
   return std::min(wanted, longest_list - (treelets.unbounded.size() > 0 ? 1 : 0));
 }
 
