@@ -10,6 +10,7 @@
 
 #include "engine/load/atomic_file.h"
 #include "engine/load/image_io.h"
+#include "engine/render/animation.h"
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
 #include "examples/cli/progress.h"
@@ -32,6 +33,7 @@ struct Options {
   std::string tracer = "auto";
   Precision precision = Precision::robust;
   bool linear = false;
+  int frames = 1;
   RenderOptions render;
 };
 
@@ -55,6 +57,13 @@ fs::path sample_scene() {
     for (const fs::path& file : {at / name, at / "share/rayengine" / name})
       if (fs::exists(file)) return file;
   throw Error("the sample scene scenes/sphereflake.json was not found near the program: name a scene to render");
+}
+
+/// image.png becomes image.0000.png and so on where there are several frames.
+fs::path frame_file(const Options& o, int frame) {
+  if (o.frames == 1) return o.output;
+  fs::path file = o.output;
+  return file.replace_extension(fmt::format(".{:04}{}", frame, o.output.extension().string()));
 }
 
 /// What can be known to be wrong before any work is done.
@@ -86,6 +95,7 @@ Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const
           {"tracer", tracer.name()},
           {"precision", to_string(tracer.precision())},
           {"size", {scene.camera.size.x, scene.camera.size.y}},
+          {"frames", o.frames},
           {"rays", total(stats)},
           {"rays_by_kind", rays},
           {"invalid_rays", stats.invalid_rays},
@@ -125,38 +135,40 @@ void say(const Options& o, const Scene& scene, const Tracer& tracer, const Rende
     std::cerr << text << '\n';
 }
 
-double write(const Options& o, const Image& image) {
+double write(const Options& o, const fs::path& file, const Image& image) {
   const auto start = std::chrono::steady_clock::now();
-  write_image(o.output, image, o.linear ? Encoding::linear : Encoding::automatic);
+  write_image(file, image, o.linear ? Encoding::linear : Encoding::automatic);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-RenderResult render_with_progress(const Options& o, const Scene& scene, Tracer& tracer) {
+/// Renders and writes; returns what was done, with the seconds for writing.
+std::pair<RenderStats, double> make_pictures(const Options& o, const Scene& scene, Tracer& tracer) {
+  double writing = 0;
+  const FrameDone done = [&](int frame, RenderResult& result) {
+    writing += write(o, frame_file(o, frame), result.image);
+  };
   Progress progress("render", !o.common.quiet());
   RenderOptions options = o.render;
   options.threads = o.common.threads;
   options.progress = [&](double share) { progress.update(share); };
-  return render(scene, tracer, options);
+  if (o.frames > 1) return {render_turn(scene, tracer, options, o.frames, done), writing};
+  RenderResult result = render(scene, tracer, options);
+  done(0, result);
+  return {result.stats, writing};
 }
 
 int run(Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
-  // The libraries behind image formats take longer to load than many a scene: side by side.
-  std::future<void> format = std::async(std::launch::async, [&] { check_writable(o.output); });
   LoadedScene loaded = load(o.scene, o.common);
-  format.get();
   Scene& scene = loaded.scene;
   if (o.size) scene.camera.size = *o.size;
   check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());
-  check_holds(o.output, scene.camera.size.x, scene.camera.size.y);
   const MadeTracer made = make_tracer(o.tracer, scene.geometry, o.precision, o.common);
-  const auto& tracer = made.tracer;
-  const RenderResult result = render_with_progress(o, scene, *tracer);
-  Seconds seconds{loaded.seconds, tracer->build_seconds(), result.stats.seconds};
-  seconds.write = write(o, result.image);
-  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, made, result.stats, seconds));
-  if (!o.common.quiet()) say(o, scene, *tracer, result.stats, seconds);
+  const auto [stats, writing] = make_pictures(o, scene, *made.tracer);
+  const Seconds seconds{loaded.seconds, made.tracer->build_seconds(), stats.seconds, writing};
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, made, stats, seconds));
+  if (!o.common.quiet()) say(o, scene, *made.tracer, stats, seconds);
   return 0;
 }
 
@@ -168,6 +180,8 @@ void add_picture_options(CLI::App* app, Options& o) {
          "full: Whitted's model; direct: Lambert and hard shadows only")
       ->type_name("full|direct")
       ->default_str("full");
+  add_count(app, "--frames", o.frames, {1, 100000},
+            "Pictures of a turn of the camera about what it looks at, as IMAGE.0000.png and so on");
   app->add_flag("--linear", o.linear, "Write values as they are, without the sRGB curve");
   app->add_option_function<std::string>(
          "--aov",

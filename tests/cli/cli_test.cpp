@@ -352,6 +352,20 @@ TEST_F(CliInfo, NamesTracersAndTheirPrecisions) {
   EXPECT_EQ((*embree)["precisions"], json({"fast", "robust"}));
 }
 
+TEST_F(Cli, FramesTurnTheCamera) {
+  const test::Outcome outcome = run("render scene.nff -o turn.png --frames 3 --size 24x16 --stats turn.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"turn.0000.png", "turn.0001.png", "turn.0002.png"})
+    EXPECT_TRUE(fs::exists(file(name))) << name;
+  EXPECT_FALSE(fs::exists(file("turn.png")));
+  ASSERT_EQ(run("render scene.nff -o one.png --size 24x16").code, 0);
+  EXPECT_EQ(test::content(file("turn.0000.png")), test::content(file("one.png")));
+  EXPECT_NE(test::content(file("turn.0001.png")), test::content(file("one.png")));
+  const json stats = parse("turn.json");
+  EXPECT_EQ(stats["frames"], 3);
+  EXPECT_EQ(stats["rays_by_kind"]["primary"], 3 * 24 * 16);
+}
+
 TEST_F(Cli, PaperCarrWritesItsFourRows) {
   const test::Outcome outcome = run("paper carr scene.nff -o carr");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
