@@ -85,7 +85,7 @@ TEST_F(CliUsage, VersionIsOneLine) {
 }
 
 TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
-  expect_failure(2, "", "render, trace, compare, bench or info");
+  expect_failure(2, "", "render, trace, compare, bench, paper or info");
   expect_failure(2, "frobnicate", "frobnicate");
   expect_failure(2, "render scene.nff --frobnicate", "--frobnicate");
   expect_failure(2, "render scene.nff --tracer nobody", "choose among auto, embree");
