@@ -24,8 +24,8 @@ struct State {
 template <class REAL>
 INLINE void begin(State<REAL>& s) {
   kernels::ray_shear(s.rays.d, s.sheared.x_last, s.sheared.y_last, s.sheared.shear);
-  s.rays.object = splat<REAL>(no_id);
-  s.index = s.u = s.v = REAL{};
+  s.rays.object = s.index = REAL{};  // the lowest ids: nothing ties with the end of the interval
+  s.u = s.v = REAL{};
   s.part = splat<REAL>(BvhAnswer::miss);
 }
 
