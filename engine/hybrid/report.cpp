@@ -40,7 +40,7 @@ HybridReport report_on(const RayPool& pool, std::size_t threads, std::uint64_t a
   HybridReport report{.cpu_rays = alone_rays, .traced_twice = counts.twice};
   if (counts.crew_seconds > 0) report.scheduling_share = counts.scheduling_seconds / counts.crew_seconds;
   report.decided = trial.decided(), report.gpu_pays = trial.pays(), report.walk_share = trial.walk_share();
-  if (trial.rate_alone() > 0) report.gain = trial.rate_both() / trial.rate_alone();
+  report.gain = trial.gain();
   for (std::size_t i = 0; i < WorkKind::count; ++i) {
     const WorkKind kind{i % 2 == 1, static_cast<RayClass>(i / 2)};
     report.cpu_rays += counts.kinds[i].by_crew, report.gpu_rays += counts.kinds[i].by_gpu;

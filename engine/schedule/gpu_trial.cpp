@@ -1,24 +1,29 @@
 #include "engine/schedule/gpu_trial.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rayengine {
 namespace {
 
-constexpr double settling = 0.01;       // seconds after a change that are not measured
-constexpr double alone_seconds = 0.02;  // after those, for the processor at least
-constexpr double both_seconds = 0.05;   // for all at least
+constexpr double settling = 0.005;      // seconds after a change that are not measured
+constexpr double alone_seconds = 0.01;  // after those, for the processor at least
+constexpr double both_seconds = 0.025;  // for all at least
 constexpr int least_landings = 3;       // of the GPU meanwhile
 constexpr double longest_wait = 1;      // seconds for the GPU's first answers
-constexpr double least_gain = 1.02;     // of the rate of all over that of the processor
-constexpr double next_trial = 50;       // in lengths of a trial: trials in vain cost 2 % at most
+constexpr double least_gain = 1.1;      // of the rate of all over that of the processor: less is luck as soon
+constexpr int trials_to_win = 2;
+constexpr double next_trial = 50;  // in lengths of a trial: trials in vain cost 2 % at most
+constexpr double next_proof = 4;   // the same for the first that was won; each later one comes twice as late
+constexpr double latest_proof = 64;
 
 }  // namespace
 
 void GpuTrial::enter(Phase phase) {
   phase_ = phase;
   in_phase_ = 0;
-  if (phase == Phase::alone) alone_ = {}, trial_ = 0;
+  if (phase == Phase::alone) alone_ = before_ = {}, trial_ = 0;
+  if (phase == Phase::after) before_ = alone_, alone_ = {};
   if (phase == Phase::both) crew_ = gpu_ = {}, landings_ = 0;
 }
 
@@ -38,7 +43,7 @@ void GpuTrial::by_crew(double work, double seconds) {
   pass(work, seconds);
   switch (phase_) {
     case Phase::alone:
-      if (in_phase_ >= settling + alone_seconds) enter(Phase::waiting);
+      if (alone_.seconds >= alone_seconds) enter(Phase::waiting);
       break;
     case Phase::waiting:
       if (in_phase_ >= longest_wait) crew_ = alone_, gpu_ = {}, decide();
@@ -47,7 +52,7 @@ void GpuTrial::by_crew(double work, double seconds) {
       if (in_phase_ >= longest_wait) enter(Phase::after);
       break;
     case Phase::after:
-      if (in_phase_ >= settling + alone_seconds) decide();
+      if (alone_.seconds >= alone_seconds) decide();
       break;
     case Phase::on:
     case Phase::resting:
@@ -65,17 +70,21 @@ void GpuTrial::by_gpu(double work, double seconds) {
 }
 
 void GpuTrial::decide() {
+  // What else the machine does only takes away.
+  last_ = {std::max(before_.rate(), alone_.rate()), crew_.rate(), gpu_.rate()};
   // All can gain no more than the GPU does: the rest is what the machine did meanwhile.
-  const double gain = std::min(rate_both(), rate_alone() + rate_gpu());
-  pays_ = gain >= least_gain * rate_alone();
-  rest_ = pays_ ? next_trial * trial_ : std::max(decided_ ? 2 * rest_ : 0, next_trial * trial_);
+  const bool won = std::min(rate_both(), last_.alone + last_.gpu) >= least_gain * last_.alone;
+  won_ = won ? won_ + 1 : 0;
+  if (won && won_ < trials_to_win && !pays_) return enter(Phase::alone);
+  rest_ = won ? trial_ * std::min(latest_proof, next_proof * std::exp2(won_ - trials_to_win))
+              : std::max(decided_ && !pays_ ? 2 * rest_ : 0, next_trial * trial_);
+  pays_ = won;
   decided_ = true;
   enter(pays_ ? Phase::on : Phase::resting);
 }
 
 double GpuTrial::walk_share() const {
-  if (gpu_.work == 0) return 0;
-  return std::max(0.0, (rate_alone() - rate_crew()) / rate_gpu());
+  return last_.gpu > 0 ? std::max(0.0, (last_.alone - last_.crew) / last_.gpu) : 0;
 }
 
 }  // namespace rayengine

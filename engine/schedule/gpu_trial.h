@@ -4,8 +4,9 @@ namespace rayengine {
 
 /// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone before and
 /// after, since whatever comes first runs on cold caches. What sending costs the processor is then in the figure,
-/// whoever does it and however. A GPU that does not pay rests, twice as long each time, and is tried again; one that
-/// pays is asked to prove it again now and then. Pure: told of work done and of the seconds it took.
+/// whoever does it and however. A GPU must win two trials in a row, for machines have other things to do as well. One
+/// that does not rests, twice as long each time, and is tried again; one that does is asked to prove it again, soon at
+/// first and then less often. Pure: told of work done and of the seconds it took.
 ///
 /// Work counts in seconds that one thread of the processor takes for it when nothing else runs, so that rays of all
 /// kinds can be added.
@@ -20,10 +21,10 @@ class GpuTrial {
   bool pays() const { return pays_; }
   bool resting() const { return phase_ == Phase::resting; }
 
-  double rate_alone() const { return alone_.rate(); }  ///< of the processor without the GPU, work a second
-  double rate_crew() const { return crew_.rate(); }    ///< of the processor beside it
-  double rate_gpu() const { return gpu_.rate(); }      ///< of the GPU
-  double rate_both() const { return rate_crew() + rate_gpu(); }
+  // Of the last trial.
+  double rate_alone() const { return last_.alone; }            ///< of the processor without the GPU, work a second
+  double rate_both() const { return last_.crew + last_.gpu; }  ///< of all
+  double gain() const { return last_.alone > 0 ? rate_both() / last_.alone : 0; }
   /// Work that the processor could not do for each that the GPU did.
   double walk_share() const;
 
@@ -41,6 +42,10 @@ class GpuTrial {
     double rate() const { return seconds > 0 ? work / seconds : 0; }
   };
 
+  struct Rates {
+    double alone = 0, crew = 0, gpu = 0;
+  };
+
   void pass(double by_crew, double seconds);
   bool measures_alone() const;
   void enter(Phase phase);
@@ -48,9 +53,10 @@ class GpuTrial {
 
   Phase phase_ = Phase::alone;
   double in_phase_ = 0, trial_ = 0, rest_ = 0;  ///< seconds
-  int landings_ = 0;
+  int landings_ = 0, won_ = 0;                  ///< trials in a row
   bool decided_ = false, pays_ = false;
-  Rate alone_, crew_, gpu_;
+  Rate before_, alone_, crew_, gpu_;
+  Rates last_;
 };
 
 }  // namespace rayengine
