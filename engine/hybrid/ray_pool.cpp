@@ -220,7 +220,9 @@ void RayPool::landed(const std::shared_ptr<Batch>& batch, std::size_t answered) 
     airborne_.erase(found);
   }
   counts_.kinds[batch->kind().index()].by_gpu += answered;
-  trial_.by_gpu(work(batch->kind(), answered), busy_since_last());
+  const double possible =
+      work(batch->kind(), lane_.largest) / gpu_models_[batch->kind().index()].predict(lane_.largest);
+  trial_.by_gpu(work(batch->kind(), answered), busy_since_last(), possible);
   crew_wakes_.notify_all();
 }
 

@@ -9,6 +9,7 @@ namespace {
 constexpr double settling = 0.005;      // seconds after a change that are not measured
 constexpr double alone_seconds = 0.01;  // after those, for the processor at least
 constexpr double both_seconds = 0.025;  // for all at least
+constexpr int understood = 2;           // landings after which the cost model tells latency from rate
 constexpr int least_landings = 3;       // of the GPU meanwhile
 constexpr double longest_wait = 1;      // seconds for the GPU's first answers
 constexpr double least_gain = 1.1;      // of the rate of all over that of the processor: less is luck as soon
@@ -60,12 +61,13 @@ void GpuTrial::by_crew(double work, double seconds) {
   }
 }
 
-void GpuTrial::by_gpu(double work, double seconds) {
+void GpuTrial::by_gpu(double work, double seconds, double possible) {
   pass(0, seconds);
   if (phase_ == Phase::waiting) return enter(Phase::both);
   if (phase_ == Phase::after) in_phase_ = 0;  // only now is the processor alone
   if (phase_ != Phase::both && phase_ != Phase::on) return;
   gpu_.work += work, ++landings_;
+  if (phase_ == Phase::both && landings_ >= understood && possible < (least_gain - 1) * alone_.rate()) return decide();
   if (phase_ == Phase::both && in_phase_ >= both_seconds && landings_ >= least_landings) enter(Phase::after);
 }
 

@@ -14,7 +14,9 @@ class GpuTrial {
  public:
   /// Work done, and the seconds since the last call in which there was any to do.
   void by_crew(double work, double seconds);
-  void by_gpu(double work, double seconds);
+  /// `possible`: work a second that the GPU could do at best, by its cost model. Where that is too little the trial is
+  /// over.
+  void by_gpu(double work, double seconds, double possible);
 
   bool wants_gpu() const { return phase_ == Phase::waiting || phase_ == Phase::both || phase_ == Phase::on; }
   bool decided() const { return decided_; }

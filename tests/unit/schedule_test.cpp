@@ -88,7 +88,7 @@ struct TrialRun {
     for (int i = 0; i < milliseconds; ++i, ++step) {
       const double rate = (trial.wants_gpu() ? crew : alone) / (cold && step < 10 ? 2 : 1);
       trial.by_crew(rate * 1e-3, 1e-3);
-      if (trial.wants_gpu() && step % 5 == 0) trial.by_gpu(gpu * 5e-3, 0);
+      if (trial.wants_gpu() && step % 5 == 0) trial.by_gpu(gpu * 5e-3, 0, gpu);
     }
   }
 };
