@@ -135,9 +135,11 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
 MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
                        const Common& common) {
   const auto said = std::make_shared<std::string>();
+  // Who leaves the choice to us is told what came of it on demand, and in --stats.
+  const bool tell = name != "auto" || common.verbosity == Verbosity::verbose;
   const auto say = [=, &common](const std::string& text) {
     *said = text;
-    note(common, text);
+    if (tell) note(common, text);
   };
   auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say});
   return {std::move(tracer), *said};
