@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <iostream>
@@ -134,15 +135,18 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
 
 MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
                        const Common& common) {
-  const auto said = std::make_shared<std::string>();
-  // Who leaves the choice to us is told what came of it on demand, and in --stats.
+  // Who leaves the choice to us is told what it was on demand, and in --stats; what goes wrong later is told at once.
   const bool tell = name != "auto" || common.verbosity == Verbosity::verbose;
-  const auto say = [=, &common](const std::string& text) {
-    *said = text;
-    if (tell) note(common, text);
+  const auto made = std::make_shared<std::atomic<bool>>(false);
+  std::string said;
+  const auto say = [=, &common, &said](const std::string& text) {
+    const bool later = *made;
+    if (!later) said = text;
+    if (later || tell) note(common, text);
   };
   auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say});
-  return {std::move(tracer), *said};
+  *made = true;
+  return {std::move(tracer), said};
 }
 
 void note(const Common& common, const std::string& text) {
