@@ -136,9 +136,9 @@ TEST(Hybrid, LeavesAGpuThatDoesNotPayAlone) {
   GeometryBuilder builder;
   builder.add(unit_sphere);
   const auto geometry = builder.build();
-  const auto hybrid =
-      make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true),
-                         [&] { return std::make_unique<PacedTracer>(geometry, 0, 2.5e-4, false); }, {.threads = threads});
+  const auto hybrid = make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true),
+                                         [&] { return std::make_unique<PacedTracer>(geometry, 0, 2.5e-4, false); },
+                                         {.threads = threads});
   const std::vector<Ray> rays = random_rays(geometry->bounds, 50'000);
   std::vector<Hit> hits(rays.size());
   for (int i = 0; i < 20; ++i) hybrid->closest(rays, hits, RayClass::primary);
