@@ -32,6 +32,7 @@ Program make_kernel_program(KernelType type, const std::vector<std::string_view>
   Stage stage{0, {"accel/kernels/prelude.glsl"}, std::move(defines)};
   stage.sources.push_back(triangle ? "accel/kernels/triangle.glsl" : "accel/kernels/quadric.glsl");
   stage.sources.insert(stage.sources.end(), ray_sources.begin(), ray_sources.end());
+  if (triangle) stage.sources.push_back("gpu/shaders/stream/triangle.glsl");
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.frag.glsl" : "gpu/shaders/stream/quadric.frag.glsl");
   if (triangle) return make_screen_program("triangle", std::move(stage));
   const auto quadric = static_cast<QuadricType>(type);

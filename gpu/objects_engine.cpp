@@ -30,7 +30,9 @@ Program make_program(KernelType type, Precision precision) {
   if (precision == Precision::half)
     return make_kernel_program(type, {"gpu/shaders/objects/packed.glsl", "gpu/shaders/objects/half.glsl"},
                                {"OBJECT", "HALF"});
-  return make_kernel_program(type, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/nearest.glsl"}, {"OBJECT"});
+  return make_kernel_program(
+      type, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/consider.glsl", "gpu/shaders/stream/nearest.glsl"},
+      {"OBJECT"});
 }
 
 }  // namespace

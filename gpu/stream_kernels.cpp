@@ -20,7 +20,8 @@ StreamKernels::StreamKernels(const SceneTextures& scene, StreamQuery query, cons
   settle_.emplace(make_screen_program("settle", {0, {ray, "gpu/shaders/stream/settle.frag.glsl"}, all}));
   select_.emplace(make_screen_program("select", {0, {ray, "gpu/shaders/stream/select.frag.glsl"}, all}));
   for (const KernelType type : scene.types)
-    tests_.push_back(make_kernel_program(type, {ray, "gpu/shaders/stream/nearest.glsl"}, all));
+    tests_.push_back(
+        make_kernel_program(type, {ray, "gpu/shaders/stream/consider.glsl", "gpu/shaders/stream/nearest.glsl"}, all));
   for (Query& query : tested_) query = make_query(GL_ANY_SAMPLES_PASSED);
 }
 

@@ -93,7 +93,7 @@ TEST(Faults, AShaderThatDoesNotCompileIsNamedWithItsLine) {
   StreamOptions options;
   options.defines = {"consider=consider ("};
   const std::string text = complaint([&] { make_stream_tracer(sphere(), Precision::robust, options); });
-  EXPECT_TRUE(says(text, "does not compile the program sphere: gpu/shaders/stream/nearest.glsl:")) << text;
+  EXPECT_TRUE(says(text, "does not compile the program sphere: gpu/shaders/stream/consider.glsl:")) << text;
 }
 
 TEST(Faults, ASceneLargerThanTheTexturesIsRefused) {

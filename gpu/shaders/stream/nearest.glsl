@@ -1,15 +1,8 @@
-// The ray of this fragment and the nearest hit found so far. A kernel's main loops over a range of primitives of its type:
-// what the ray's treelet holds, and only rays in that state get here; or, where OBJECT is defined, one object for all rays.
+// The ray of this fragment and its nearest hit, after consider.glsl. A kernel's main loops over a range of primitives of its
+// type: what the ray's treelet holds, and only rays in that state get here; or, where OBJECT is defined, one object for all
+// rays.
 layout(early_fragment_tests) in;
 layout(location = 0) out uvec2 result;
-
-vec3 origin;
-vec3 direction;
-float tmin;
-float tmax;
-uint floor_rank;
-float best_t;
-uint best_rank;
 
 // Reads the ray, and returns the range of primitives to test.
 uvec2 begin() {
@@ -29,19 +22,6 @@ uvec2 begin() {
 #else
   return range_of(texelFetch(lists, at, 0)[round]);
 #endif
-}
-
-// Keeps a hit, and says so, if it is in the interval and nearer than the best, or as near and of lower rank.
-bool consider(float t, uint rank) {
-#ifdef MUTANT_INDEX
-  rank ^= 1u;
-#endif
-  bool inside = t <= tmax && (t > tmin || (t == tmin && rank > floor_rank));
-  bool nearer = t < best_t || (t == best_t && rank < best_rank);
-  if (!inside || !nearer) return false;
-  best_t = t;
-  best_rank = rank;
-  return true;
 }
 
 // For any-hit queries one is enough.
