@@ -22,6 +22,7 @@ struct CastMaterial {
   glm::vec3 color{0.8f};
   float ambient = 0, diffuse = 1;  ///< multiply `color`
   float specular = 0, shininess = 30;
+  float reflect = 0;  ///< of what a mirror would show; a RayCaster has no mirrors
 };
 
 /// Rays cast and shaded on the device, without shadows and reflections: hits do not come back to the CPU. Source: Wood,

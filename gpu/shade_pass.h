@@ -5,7 +5,7 @@
 #include "accel/bvh.h"
 #include "gpu/await.h"
 #include "gpu/program.h"
-#include "gpu/ray_caster.h"
+#include "gpu/shading_textures.h"
 
 namespace rayengine {
 
@@ -21,7 +21,7 @@ class ShadePass {
 
  private:
   Program program_;
-  BufferTexture owners_, materials_, lights_;
+  ShadingTextures textures_;
   GLint light_count_;
   GLsizei side_;
   Texture color_;
