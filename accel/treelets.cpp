@@ -34,22 +34,6 @@ bool before_in_treelet(const TreeletPrimitive& a, const TreeletPrimitive& b) {
   return std::pair(a.type + 1, a.id) < std::pair(b.type + 1, b.id);
 }
 
-/// Appends primitives, by type, as one treelet.
-Treelet append(Treelets& to, std::span<const TreeletPrimitive> primitives, std::span<std::uint32_t> members) {
-  std::sort(members.begin(), members.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return before_in_treelet(primitives[a], primitives[b]); });
-  Treelet t;
-  t.first_triangle = static_cast<std::uint32_t>(to.triangles.size());
-  t.first_quadric = static_cast<std::uint32_t>(to.quadrics.size());
-  for (const std::uint32_t i : members) {
-    const TreeletPrimitive& p = primitives[i];
-    (p.type == TreeletPrimitive::triangle ? to.triangles : to.quadrics).push_back(p.id);
-  }
-  t.triangle_count = static_cast<std::uint32_t>(to.triangles.size()) - t.first_triangle;
-  t.quadric_count = static_cast<std::uint32_t>(to.quadrics.size()) - t.first_quadric;
-  return t;
-}
-
 /// Which treelet each node of the BVH becomes, no_id above the cut and below it.
 std::vector<std::uint32_t> cut(const BinaryBvh& bvh, std::uint32_t K) {
   std::vector<std::uint32_t> treelet_of(bvh.nodes.size(), no_id);
@@ -71,6 +55,8 @@ std::vector<std::uint32_t> cut(const BinaryBvh& bvh, std::uint32_t K) {
 }
 
 }  // namespace
+
+bool TreeletPrimitive::bounded() const { return has_end(bounds); }
 
 std::vector<TreeletPrimitive> treelet_primitives(const Geometry& geometry) {
   std::vector<TreeletPrimitive> result;
@@ -97,15 +83,29 @@ std::size_t Treelets::bytes() const {
          (triangles.capacity() + quadrics.capacity()) * sizeof(std::uint32_t);
 }
 
+Treelet append_treelet(Treelets& to, std::span<const TreeletPrimitive> primitives, std::span<std::uint32_t> members) {
+  std::sort(members.begin(), members.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return before_in_treelet(primitives[a], primitives[b]); });
+  Treelet t;
+  t.first_triangle = static_cast<std::uint32_t>(to.triangles.size());
+  t.first_quadric = static_cast<std::uint32_t>(to.quadrics.size());
+  for (const std::uint32_t i : members) {
+    const TreeletPrimitive& p = primitives[i];
+    (p.type == TreeletPrimitive::triangle ? to.triangles : to.quadrics).push_back(p.id);
+  }
+  t.triangle_count = static_cast<std::uint32_t>(to.triangles.size()) - t.first_triangle;
+  t.quadric_count = static_cast<std::uint32_t>(to.quadrics.size()) - t.first_quadric;
+  return t;
+}
+
 Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K, const Box& about) {
   if (K == 0) throw Error("treelets of no primitives were asked for: K must be 1 or more");
   std::vector<Box> boxes;
   std::vector<std::uint32_t> bounded, unbounded;
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    const Box& box = primitives[i].bounds;
-    const bool fits = has_end(box);
+    const bool fits = primitives[i].bounded();
     (fits ? bounded : unbounded).push_back(i);
-    if (fits) boxes.push_back(box);
+    if (fits) boxes.push_back(primitives[i].bounds);
   }
 
   const BinaryBvh bvh = build_bvh(boxes, std::min(K, 8u), about);
@@ -118,9 +118,9 @@ Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint3
     std::vector<std::uint32_t> members;
     for (std::uint32_t k = 0; k < bvh.nodes[i].count; ++k)
       members.push_back(bounded[bvh.order[bvh.nodes[i].first + k]]);
-    result.treelets.push_back(append(result, primitives, members));
+    result.treelets.push_back(append_treelet(result, primitives, members));
   }
-  result.unbounded = append(result, primitives, unbounded);
+  result.unbounded = append_treelet(result, primitives, unbounded);
   return result;
 }
 

@@ -16,6 +16,9 @@ struct TreeletPrimitive {
   Box bounds;
   std::uint32_t type = triangle;  ///< `triangle`, or the QuadricType
   std::uint32_t id = 0;           ///< the caller's: see Treelets::triangles and Treelets::quadrics
+
+  /// Whether a structure can hold it; what has no end must be tested against every ray.
+  bool bounded() const;
 };
 
 /// The triangles and quadrics that `geometry` itself holds (not its instances); ids are indices into
@@ -48,6 +51,10 @@ struct Treelets {
 /// The bounds of all in `geometry` that has an end, as exact as its vertices: what a frame is best taken from, since a
 /// scene that is symmetric stays so in it, and rays that hit two primitives at once do so in single precision, too.
 Box frame_bounds(const Geometry& geometry);
+
+/// Appends the primitives whose indices are `members` as one treelet, in the order of their types and ids, which
+/// `members` then has as well.
+Treelet append_treelet(Treelets& to, std::span<const TreeletPrimitive> primitives, std::span<std::uint32_t> members);
 
 /// Every primitive lands in exactly one treelet, or in `unbounded`. The frame is that of the primitives' bounds, or of
 /// `about` where it is not empty. Throws Error when K is 0, or there is no memory.

@@ -57,6 +57,7 @@ template <class MASK, class REAL>
 KERNEL REAL magnitude(REAL a) { return a < 0 ? -a : a; }
 KERNEL REAL smaller(REAL a, REAL b) { return a < b ? a : b; }
 KERNEL REAL larger(REAL a, REAL b) { return a > b ? a : b; }
+KERNEL REAL whole(REAL a) { return std::floor(a); }
 KERNEL REAL root(REAL a) {
   if constexpr (is_lanes<REAL>) {
     for (unsigned i = 0; i < sizeof(REAL) / sizeof(a[0]); ++i) a[i] = __builtin_sqrt(a[i]);
@@ -76,6 +77,7 @@ KERNEL REAL power(REAL a, REAL b) {
 }
 
 #include "accel/kernels/box.glsl"
+#include "accel/kernels/grid.glsl"
 #include "accel/kernels/highlight.glsl"
 #include "accel/kernels/quadric.glsl"
 #include "accel/kernels/triangle.glsl"

@@ -11,6 +11,7 @@ bool either(bool a, bool b) { return a || b; }
 float pick(bool condition, float yes, float no) { return condition ? yes : no; }
 float root(float a) { return sqrt(a); }
 float power(float a, float b) { return pow(a, b); }
+float whole(float a) { return floor(a); }
 float magnitude(float a) { return abs(a); }
 float smaller(float a, float b) { return a < b ? a : b; }
 float larger(float a, float b) { return a > b ? a : b; }
