@@ -80,6 +80,7 @@ KERNEL REAL power(REAL a, REAL b) {
 #include "accel/kernels/grid.glsl"
 #include "accel/kernels/highlight.glsl"
 #include "accel/kernels/quadric.glsl"
+#include "accel/kernels/ray_cone.glsl"
 #include "accel/kernels/triangle.glsl"
 
 #undef KERNEL
