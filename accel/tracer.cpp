@@ -17,4 +17,9 @@ std::optional<Precision> parse_precision(std::string_view name) {
   return std::nullopt;
 }
 
+void check_lengths(std::size_t rays, std::size_t answers) {
+  if (rays != answers)
+    throw Error("there are " + std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
+}
+
 }  // namespace rayengine

@@ -57,6 +57,9 @@ class Tracer {
   virtual HitLists all(std::span<const Ray> rays) = 0;
 };
 
+/// Throws Error unless a query has room for as many answers as it has rays.
+void check_lengths(std::size_t rays, std::size_t answers);
+
 /// A failure that its user can mend: `what()` is one line that says what, where (file:line) and what to do.
 class Error : public std::runtime_error {
  public:

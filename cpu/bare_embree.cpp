@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "accel/stopwatch.h"
 #include "accel/tracer.h"
 #include "cpu/round_sphere.h"
 
@@ -208,9 +208,9 @@ void BareEmbree::Impl::add_tessellated() {
 
 void BareEmbree::Impl::commit(bool robust) {
   rtcSetSceneFlags(scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   rtcCommitScene(scene);
-  build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  build_seconds = watch.seconds();
   check();
   packet_width = width();
 }

@@ -1,9 +1,9 @@
 #include "cpu/bvh_tracer.h"
 
-#include <chrono>
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "accel/stopwatch.h"
 #include "accel/surface.h"
 #include "cpu/bvh_instances.h"
 #include "cpu/ranges.h"
@@ -29,11 +29,8 @@ struct Found {
 
 class BvhTracer final : public Tracer {
  public:
-  explicit BvhTracer(std::shared_ptr<const Geometry> geometry)
-      : start_(std::chrono::steady_clock::now()),
-        scene_(geometry),
-        instances_(*geometry),
-        build_seconds_(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count()) {}
+  explicit BvhTracer(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
+      : scene_(geometry), instances_(*geometry), build_seconds_(watch.seconds()) {}
 
   std::string_view name() const override { return "bvh"; }
   Precision precision() const override { return Precision::robust; }
@@ -50,7 +47,6 @@ class BvhTracer final : public Tracer {
   bool any_instance(const Ray& ray) const;
   std::vector<Hit> all(const Ray& ray) const;
 
-  std::chrono::steady_clock::time_point start_;
   BvhScene scene_;
   BvhInstances instances_;
   double build_seconds_;
@@ -125,7 +121,7 @@ bool BvhTracer::any_instance(const Ray& ray) const {
 }
 
 void BvhTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass) {
-  check_sizes(rays.size(), hits.size());
+  check_lengths(rays.size(), hits.size());
   for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
     const auto mine = rays.subspan(begin, end - begin);
     std::vector<BvhAnswer> answers(mine.size());
@@ -138,7 +134,7 @@ void BvhTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass
 }
 
 void BvhTracer::any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass) {
-  check_sizes(rays.size(), status.size());
+  check_lengths(rays.size(), status.size());
   for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
     const auto mine = rays.subspan(begin, end - begin);
     const auto answers = status.subspan(begin, end - begin);

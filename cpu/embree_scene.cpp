@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 
 #include "accel/rounding.h"
+#include "accel/stopwatch.h"
 
 namespace rayengine {
 namespace {
@@ -88,7 +88,7 @@ EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision pre
   rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &memory);
   if (rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) native_packet_ = 16;
 
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const double padding =
       precision_ == Precision::fast || finite_bounds_.empty() ? 0 : finite_bounds_.extent() * padding_per_extent;
   groups_.resize(geometry_->groups.size());
@@ -99,7 +99,7 @@ EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision pre
   }
   for (std::size_t i = 0; i < groups_.size(); ++i) build(groups_[i], *geometry_->groups[i], group_padding[i]);
   build(top_, *geometry_, padding);
-  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  build_seconds_ = watch.seconds();
 
   rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
   embree_bytes_ = memory;

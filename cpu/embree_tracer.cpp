@@ -206,7 +206,7 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
 }
 
 void EmbreeTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) {
-  check_sizes(rays.size(), hits.size());
+  check_lengths(rays.size(), hits.size());
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
     const auto some = rays.subspan(first, last - first);
     const auto out = hits.subspan(first, last - first);
@@ -224,7 +224,7 @@ void EmbreeTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayCl
 }
 
 void EmbreeTracer::any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) {
-  check_sizes(rays.size(), status.size());
+  check_lengths(rays.size(), status.size());
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
     const auto some = rays.subspan(first, last - first);
     const auto out = status.subspan(first, last - first);

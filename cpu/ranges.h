@@ -12,10 +12,6 @@
 
 namespace rayengine {
 
-inline void check_sizes(std::size_t rays, std::size_t answers) {
-  if (rays != answers) throw Error("a query needs as many answers as rays");
-}
-
 /// Calls work(first, last) for ranges that make up [0, count), on all threads; up to a grain, on the calling one.
 template <class Work>
 void for_ranges(std::size_t count, Work&& work) {

@@ -3,9 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
+#include "accel/stopwatch.h"
 #include "cpu/reference/walk.h"
 
 namespace rayengine {
@@ -76,11 +76,8 @@ class All final : public reference::Sink {
 
 class ReferenceTracer final : public Tracer {
  public:
-  explicit ReferenceTracer(std::shared_ptr<const Geometry> geometry)
-      : geometry_(std::move(geometry)),
-        begun_(std::chrono::steady_clock::now()),
-        walk_(*geometry_),
-        seconds_(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count()) {}
+  explicit ReferenceTracer(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
+      : geometry_(std::move(geometry)), walk_(*geometry_), seconds_(watch.seconds()) {}
 
   std::string_view name() const override { return "reference"; }
   Precision precision() const override { return Precision::certified; }
@@ -111,12 +108,6 @@ class ReferenceTracer final : public Tracer {
   }
 
  private:
-  static void check_lengths(std::size_t rays, std::size_t answers) {
-    if (rays != answers)
-      throw Error("a query has " + std::to_string(rays) + " rays, but room for " + std::to_string(answers) +
-                  " answers");
-  }
-
   template <class Work>
   static void each(std::span<const Ray> rays, const Work& work) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 16), [&](const auto& range) {
@@ -146,7 +137,6 @@ class ReferenceTracer final : public Tracer {
   }
 
   std::shared_ptr<const Geometry> geometry_;
-  std::chrono::steady_clock::time_point begun_;
   reference::Walk walk_;
   double seconds_;
 };

@@ -1,7 +1,6 @@
 #include "gpu/gpu_report.h"
 
-#include <chrono>
-
+#include "accel/stopwatch.h"
 #include "gpu/stream_kernels.h"
 
 namespace rayengine {
@@ -31,10 +30,10 @@ GpuReport report_on_gpu(int device) {
   Context context(device);
   GpuReport report{context.info(), probe(context)};
   const SceneTextures textures = every_type(context.info());
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const StreamKernels kernels(textures, StreamQuery::closest, {});
   draw_once(kernels, textures);
-  report.compile_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.compile_seconds = watch.seconds();
   report.cached = kernels.cached();
   context.check_errors("the compilation of all shaders");
   return report;

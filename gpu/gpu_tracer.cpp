@@ -1,12 +1,12 @@
 #include "gpu/gpu_tracer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <optional>
 #include <tuple>
 
+#include "accel/stopwatch.h"
 #include "accel/surface.h"
 #include "gpu/flat_scene.h"
 #include "gpu/gl_thread.h"
@@ -21,9 +21,9 @@ class GpuTracer : public Tracer {
   GpuTracer(std::string_view name, std::shared_ptr<const Geometry> geometry, Precision precision,
             const MakeEngine& make)
       : name_(name), geometry_(std::move(geometry)), precision_(precision) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     thread_.run([&] { engine_ = make(); });
-    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    build_seconds_ = watch.seconds();
   }
   ~GpuTracer() override {
     thread_.run([this] { engine_.reset(); });
@@ -83,11 +83,6 @@ class GpuTracer : public Tracer {
   }
 
  private:
-  static void check_lengths(std::size_t rays, std::size_t answers) {
-    if (rays != answers)
-      throw Error("there are " + std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
-  }
-
   static Hit miss(const Ray& ray) {
     Hit hit;
     if (!is_valid(ray)) hit.status = status_invalid;

@@ -8,6 +8,7 @@
 #include <future>
 #include <thread>
 
+#include "accel/stopwatch.h"
 #include "engine/hybrid/ray_pool.h"
 #include "engine/hybrid/report.h"
 #include "engine/query.h"
@@ -20,10 +21,6 @@ constexpr std::size_t largest_gpu_batch = 262144;
 constexpr std::size_t one_thread_rays = 4096;  // queries up to this are answered by their caller
 constexpr double long_overdue = 1;             // seconds after which a GPU that does not answer is told of
 constexpr double single_roundoff = 0x1p-24;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 class HybridTracer : public Hybrid {
  public:
@@ -50,11 +47,6 @@ class HybridTracer : public Hybrid {
   void lose_gpu() override;
 
  private:
-  static void check_lengths(std::size_t rays, std::size_t answers) {
-    if (rays != answers)
-      throw Error("there are " + std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
-  }
-
   void answer(WorkKind kind, std::span<const Ray> rays, const Answers& answers);
   void answer_alone(WorkKind kind, std::span<const Ray> rays, const Answers& answers);
   void answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays, const Answers& answers);
@@ -123,7 +115,7 @@ void HybridTracer::answer(WorkKind kind, std::span<const Ray> rays, const Answer
 }
 
 void HybridTracer::answer_alone(WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const bool small = rays.size() <= one_thread_rays;
   if (small)
     trace(*cpu_, kind, rays, answers);
@@ -131,7 +123,7 @@ void HybridTracer::answer_alone(WorkKind kind, std::span<const Ray> rays, const 
     rayengine::any(*cpu_, rays, answers.status, kind.ray_class);
   else
     rayengine::closest(*cpu_, rays, answers.hits, kind.ray_class);
-  const double seconds = seconds_since(start) * (small ? 1 : static_cast<double>(threads_));
+  const double seconds = watch.seconds() * (small ? 1 : static_cast<double>(threads_));
   if (RayPool* pool = pool_) return pool->rested(kind, rays.size(), seconds);
   alone_rays_ += rays.size();
   const double spent = alone_seconds_ += seconds;

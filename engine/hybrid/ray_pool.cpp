@@ -13,14 +13,14 @@ constexpr std::size_t smallest_crew_batch = 1024;
 constexpr double fading = 1;  // seconds of a thread
 
 /// Adds the seconds until it goes to a sum.
-class Stopwatch {
+class AddSeconds {
  public:
-  explicit Stopwatch(double& sum) : sum_(sum) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  explicit AddSeconds(double& sum) : sum_(sum) {}
+  ~AddSeconds() { sum_ += watch_.seconds(); }
 
  private:
   double& sum_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const Stopwatch watch_;
 };
 
 }  // namespace
@@ -33,7 +33,7 @@ RayPool::RayPool(std::size_t threads, std::size_t gpu_batch, std::size_t gpu_dep
   lane_.depth = gpu_depth;
 }
 
-double RayPool::now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+double RayPool::now() const { return watch_.seconds(); }
 
 /// Seconds since the last call in which there was work.
 double RayPool::busy_since_last() {
@@ -104,7 +104,7 @@ CrewWork RayPool::begin(CrewWork work) {
 
 std::optional<CrewWork> RayPool::crew_work(const Job& own) {
   const Lock lock(mutex_);
-  const Stopwatch watch(counts_.scheduling_seconds);
+  const AddSeconds watch(counts_.scheduling_seconds);
   if (auto work = from_orphans()) return work;
   if (auto work = from_job(own)) return work;
   return fresh() > 0 ? std::nullopt : from_gpu(own.kind);
@@ -152,7 +152,7 @@ std::optional<CrewWork> RayPool::from_gpu(WorkKind kind) {
 
 void RayPool::crew_done(const CrewWork& work, std::size_t answered) {
   const Lock lock(mutex_);
-  const Stopwatch watch(counts_.scheduling_seconds);
+  const AddSeconds watch(counts_.scheduling_seconds);
   const double seconds = now() - work.begun;
   if (const auto end = std::ranges::find(busy_until_, work.due); end != busy_until_.end()) busy_until_.erase(end);
   crew_models_[work.kind.index()].add(work.rays, seconds);
@@ -175,7 +175,7 @@ std::shared_ptr<Batch> RayPool::gpu_work() {
   Lock lock(mutex_);
   while (!closed_ && !lane_.lost) {
     if (const auto job = job_for_gpu()) {
-      const Stopwatch watch(counts_.scheduling_seconds);
+      const AddSeconds watch(counts_.scheduling_seconds);
       if (const std::size_t rays = lane_batch(situation(job->kind), 0)) return make_batch(job->kind, rays);
     }
     gpu_wakes_.wait(lock);

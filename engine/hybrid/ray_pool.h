@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "accel/stopwatch.h"
 #include "engine/hybrid/batch.h"
 #include "engine/schedule/gpu_trial.h"
 #include "engine/schedule/policy.h"
@@ -104,7 +104,7 @@ class RayPool {
   CrewWork take_blocks(Airborne& from, std::size_t rays);
   std::shared_ptr<Batch> make_batch(WorkKind kind, std::size_t rays);
 
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const Stopwatch watch_;
   mutable std::mutex mutex_;
   std::condition_variable crew_wakes_, gpu_wakes_;
   bool closed_ = false;

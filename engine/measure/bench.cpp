@@ -1,9 +1,9 @@
 #include "engine/measure/bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
+#include "accel/stopwatch.h"
 #include "cpu/reference_tracer.h"
 #include "engine/batched.h"
 #include "engine/measure/contestant.h"
@@ -91,9 +91,9 @@ std::vector<Entry> make_entries(const Scene& scene, const BenchOptions& options,
 /// Seconds for one query of all rays.
 double time(Contestant& contestant, const RaySet& set, std::span<const Ray> rays) {
   contestant.poison(rays.size());
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   set.any ? contestant.any(rays, set.ray_class) : contestant.closest(rays, set.ray_class);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return watch.seconds();
 }
 
 /// The best of a few short runs: the first ones pay for memory and caches.

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
+#include "accel/stopwatch.h"
 #include "accel/walk.h"
 #include "engine/measure/random.h"
 #include "engine/measure/rays.h"
@@ -89,9 +89,9 @@ Rays make_rays(const Scene& scene, Tracer& tracer) {
 }
 
 double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return watch.seconds();
 }
 
 Scene looked_at(GeometryBuilder& builder) {

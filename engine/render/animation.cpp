@@ -1,10 +1,10 @@
 #include "engine/render/animation.h"
 
 #include <atomic>
-#include <chrono>
 #include <future>
 #include <glm/geometric.hpp>
 
+#include "accel/stopwatch.h"
 #include "accel/transform.h"
 
 namespace rayengine {
@@ -44,7 +44,7 @@ Camera turntable(const Camera& camera, int frame, int frames) {
 
 RenderStats render_turn(const Scene& scene, Tracer& tracer, const RenderOptions& options, int frames,
                         const FrameDone& done) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   RenderStats sum;
   const auto render_frame = [&](int frame, Starter& next) {
     Scene turned = scene;
@@ -76,7 +76,7 @@ RenderStats render_turn(const Scene& scene, Tracer& tracer, const RenderOptions&
     next->wait();
   }
   if (last.valid()) last.get();
-  sum.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  sum.seconds = watch.seconds();
   return sum;
 }
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 
+#include "accel/stopwatch.h"
 #include "engine/render/aov.h"
 #include "engine/render/tiles.h"
 
@@ -74,7 +74,7 @@ std::size_t wave_size(const glm::ivec2& size, int spp, const Limits& limits, int
 }  // namespace
 
 RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   check(scene, options);
   const CameraFrame camera(scene.camera);
   const Environment environment(scene.background);
@@ -106,7 +106,7 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
         tbb::simple_partitioner());
   });
   for (const TileRenderer& r : renderers) r.add_to(result.stats);
-  result.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.stats.seconds = watch.seconds();
   return result;
 }
 

@@ -1,8 +1,8 @@
 #include "engine/render/tiles.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "accel/stopwatch.h"
 #include "engine/render/aov.h"
 
 namespace rayengine {
@@ -69,14 +69,14 @@ void TileRenderer::trace_aovs(Image& image) {
 }
 
 void TileRenderer::render(std::size_t tile, Image& image) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   pixels_.clear();
   tiling_.pixels(tile, pixels_);
   colors_.assign(pixels_.size(), glm::dvec3(0));
   for (int s = 0; s < options_.spp; s += tiling_.pass) sample(s, std::min(s + tiling_.pass, options_.spp));
   write_colors(image);
   if (!options_.aovs.empty()) trace_aovs(image);
-  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds_ += watch.seconds();
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <chrono>
 #include <iostream>
 
+#include "accel/stopwatch.h"
 #include "engine/load/load.h"
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
@@ -126,9 +126,9 @@ ThreadLimit::~ThreadLimit() = default;
 int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
 LoadedScene load(const std::filesystem::path& file, const Common& common) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   LoadedScene loaded{load_scene(file)};
-  loaded.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  loaded.seconds = watch.seconds();
   for (const std::string& text : loaded.scene.notes) note(common, text);
   return loaded;
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <future>
 #include <iostream>
 #include <numeric>
 
+#include "accel/stopwatch.h"
 #include "engine/load/atomic_file.h"
 #include "engine/load/image_io.h"
 #include "engine/render/animation.h"
@@ -136,9 +136,9 @@ void say(const Options& o, const Scene& scene, const Tracer& tracer, const Rende
 }
 
 double write(const Options& o, const fs::path& file, const Image& image) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   write_image(file, image, o.linear ? Encoding::linear : Encoding::automatic);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return watch.seconds();
 }
 
 /// Renders and writes; returns what was done, with the seconds for writing.

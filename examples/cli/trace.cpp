@@ -3,9 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <chrono>
 #include <iostream>
 
+#include "accel/stopwatch.h"
 #include "accel/surface.h"
 #include "engine/load/atomic_file.h"
 #include "engine/load/npy.h"
@@ -136,10 +136,10 @@ int run(const Options& o) {
   const MadeTracer made = make_tracer(o.tracer, loaded.scene.geometry, o.precision, o.common);
   const auto& tracer = made.tracer;
   say_rounding(o, geometry, *tracer);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   HitLists lists = ask(o, *tracer, rays);
   if (o.query != "any") refine_all(geometry, *tracer, rays, lists.offsets, lists.hits);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = watch.seconds();
   write(o, lists);
   Figures figures = count(rays, lists.hits);
   figures.load = loaded.seconds, figures.trace = seconds;

@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "accel/stopwatch.h"
 #include "engine/hybrid/hybrid_tracer.h"
 #include "engine/measure/rays.h"
 #include "engine/query.h"
@@ -54,9 +55,9 @@ double expect_right(Rig& rig, std::size_t count) {
   const std::vector<Ray> rays = random_rays(rig.geometry->bounds, count, 5);
   std::vector<Hit> hits(count), right(count);
   for (Hit& hit : hits) hit.status = 77;  // nobody's answer
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   rig.hybrid->closest(rays, hits, RayClass::primary);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = watch.seconds();
   closest(*make_embree_tracer(rig.geometry, Precision::robust), rays, right, RayClass::primary);
   for (std::size_t i = 0; i < count; ++i)
     if (!same(hits[i], right[i])) {
