@@ -5,26 +5,34 @@
 namespace rayengine {
 namespace {
 
-std::string form_define(QuadricType type) {
+/// The coefficients A, E, H, I, J.
+std::string form_of(QuadricType type) {
   const QuadricMatrix m = unit_matrix(type);
   char text[120];
-  std::snprintf(text, sizeof text, "FORM=%.1f, %.1f, %.1f, %.1f, %.1f", m[0], m[4], m[7], m[8], m[9]);
+  std::snprintf(text, sizeof text, "%.1f, %.1f, %.1f, %.1f, %.1f", m[0], m[4], m[7], m[8], m[9]);
   return text;
 }
 
-std::vector<std::string> quadric_defines(QuadricType type) {
+/// How it is clipped, whether it may have caps, and whether it is a cone.
+std::string traits_of(QuadricType type) {
   switch (type) {
-    case QuadricType::general: return {"GENERAL"};
-    case QuadricType::plane: return {"PLANE", form_define(type)};
-    case QuadricType::disk: return {"DISK", form_define(type)};
-    case QuadricType::saddle: return {"SADDLE", form_define(type)};
-    case QuadricType::sphere: return {form_define(type)};
-    case QuadricType::cone: return {"CAPS", "CONE", form_define(type)};
-    default: return {"CAPS", form_define(type)};
+    case QuadricType::plane: return "never, false, false";
+    case QuadricType::disk: return "to_disk, false, false";
+    case QuadricType::saddle: return "to_cube, false, false";
+    case QuadricType::sphere: return "by_planes, false, false";
+    case QuadricType::cone: return "by_planes, true, true";
+    default: return "by_planes, true, false";
   }
 }
 
 }  // namespace
+
+std::string test_call(KernelType type, const std::string& index) {
+  if (type == TreeletPrimitive::triangle) return "test_triangle(" + index + ")";
+  const auto quadric = static_cast<QuadricType>(type);
+  if (quadric == QuadricType::general) return "test_general(" + index + ")";
+  return "test_unit(" + index + ", " + form_of(quadric) + ", " + traits_of(quadric) + ")";
+}
 
 Program make_kernel_program(KernelType type, const std::vector<std::string_view>& ray_sources,
                             std::vector<std::string> defines) {
@@ -32,11 +40,12 @@ Program make_kernel_program(KernelType type, const std::vector<std::string_view>
   Stage stage{0, {"accel/kernels/prelude.glsl"}, std::move(defines)};
   stage.sources.push_back(triangle ? "accel/kernels/triangle.glsl" : "accel/kernels/quadric.glsl");
   stage.sources.insert(stage.sources.end(), ray_sources.begin(), ray_sources.end());
-  if (triangle) stage.sources.push_back("gpu/shaders/stream/triangle.glsl");
+  stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.glsl" : "gpu/shaders/stream/quadric.glsl");
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.frag.glsl" : "gpu/shaders/stream/quadric.frag.glsl");
   if (triangle) return make_screen_program("triangle", std::move(stage));
   const auto quadric = static_cast<QuadricType>(type);
-  for (std::string& define : quadric_defines(quadric)) stage.defines.push_back(std::move(define));
+  stage.defines.push_back("TEST(i)=" + test_call(type, "i"));
+  stage.defines.push_back(quadric == QuadricType::general ? "GENERAL" : "FORM=" + form_of(quadric));
   return make_screen_program(to_string(quadric), std::move(stage));
 }
 

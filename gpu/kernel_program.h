@@ -10,8 +10,11 @@
 namespace rayengine {
 
 /// Texture units and uniform locations that the kernels in gpu/shaders/stream share.
-enum KernelUnit : GLuint { entries_unit = 3, hits_unit = 4, ranges_unit = 5, primitives_unit = 6, forms_unit = 7 };
+enum KernelUnit : GLuint { entries_unit = 3, hits_unit = 4, ranges_unit = 5 };
 enum KernelLocation : GLint { round_location = 1, type_location = 2, types_location = 3, object_range_location = 4 };
+
+/// The call, as GLSL, that tests the primitive of this type whose texels begin at `index`.
+std::string test_call(KernelType type, const std::string& index);
 
 /// The intersection shader for one type of primitive, over the shared kernel source. `ray_sources` say how rays and
 /// hits are read and written: begin(), consider(), enough() and end().

@@ -79,14 +79,10 @@ void ObjectsEngine::cast(std::span<const Traveller> travellers) {
   glBindVertexArray(vertices_.id());
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   batch_->upload(travellers);
-  textures_.forms.bind(forms_unit);
+  textures_.bind();
   std::size_t current = textures_.types.size();
   for (const Pass& pass : passes_) {
-    if (pass.type != std::exchange(current, pass.type)) {
-      programs_[pass.type].use();
-      const bool triangles = textures_.types[pass.type] == TreeletPrimitive::triangle;
-      (triangles ? textures_.triangles : textures_.quadrics).bind(primitives_unit);
-    }
+    if (pass.type != std::exchange(current, pass.type)) programs_[pass.type].use();
     batch_->turn();
     glUniform2ui(object_range_location, pass.first, pass.count);
     draw_everywhere();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "accel/tracer.h"
@@ -20,12 +22,6 @@ std::uint32_t finite_bits(double a) { return bits(std::clamp(a, -1e37, 1e37)); }
 template <class T>
 BufferTexture texture_of(GLenum format, const std::vector<T>& content) {
   return make_buffer_texture(format, std::as_bytes(std::span(content)));
-}
-
-void require(std::size_t texels, const char* what, const GpuInfo& gpu) {
-  if (texels > static_cast<std::size_t>(gpu.buffer_texels))
-    throw Error(std::string("the scene's ") + what + " need " + std::to_string(texels) +
-                " texels, more than the GPU's " + std::to_string(gpu.buffer_texels) + "; use --tracer embree");
 }
 
 /// Three texels: the corners, and in the first one's w the rank.
@@ -93,29 +89,59 @@ std::vector<std::array<std::uint32_t, 2>> ranges_of(const Geometry& g, const Tre
   return ranges;
 }
 
-}  // namespace
-
-SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const GpuInfo& gpu) {
-  require(3 * treelets.triangles.size(), "triangles", gpu);
-  require(4 * treelets.quadrics.size(), "quadrics", gpu);
-  require(4 * scene.geometry->forms.size(), "general forms", gpu);
+SceneTextures upload_primitives(const FlatScene& scene, const LocalFrame& frame,
+                                std::span<const std::uint32_t> triangle_order,
+                                std::span<const std::uint32_t> quadric_order, const GpuInfo& gpu) {
+  require_texels(3 * triangle_order.size(), "triangles", gpu);
+  require_texels(4 * quadric_order.size(), "quadrics", gpu);
+  require_texels(4 * scene.geometry->forms.size(), "general forms", gpu);
   std::vector<Texel> triangles, quadrics, forms;
-  triangles.reserve(3 * treelets.triangles.size());
-  quadrics.reserve(4 * treelets.quadrics.size());
-  for (const std::uint32_t i : treelets.triangles) append_triangle(triangles, scene, treelets.frame, i);
-  for (const std::uint32_t i : treelets.quadrics) append_quadric(quadrics, scene, treelets.frame, i);
+  triangles.reserve(3 * triangle_order.size());
+  quadrics.reserve(4 * quadric_order.size());
+  for (const std::uint32_t i : triangle_order) append_triangle(triangles, scene, frame, i);
+  for (const std::uint32_t i : quadric_order) append_quadric(quadrics, scene, frame, i);
   for (const GeneralForm& form : scene.geometry->forms) append_form(forms, form);
   SceneTextures result;
   result.types = types_in(*scene.geometry);
-  const auto ranges = ranges_of(*scene.geometry, treelets, result.types);
-  require(ranges.size(), "treelets", gpu);
   result.triangles = texture_of(GL_RGBA32UI, triangles);
   result.quadrics = texture_of(GL_RGBA32UI, quadrics);
   result.forms = texture_of(GL_RGBA32UI, forms);
-  result.ranges = texture_of(GL_RG32UI, ranges);
-  result.bytes = result.triangles.buffer.bytes + result.quadrics.buffer.bytes + result.forms.buffer.bytes +
-                 result.ranges.buffer.bytes;
+  result.bytes = result.triangles.buffer.bytes + result.quadrics.buffer.bytes + result.forms.buffer.bytes;
   return result;
+}
+
+}  // namespace
+
+void require_texels(std::size_t texels, const char* what, const GpuInfo& gpu) {
+  if (texels > static_cast<std::size_t>(gpu.buffer_texels))
+    throw Error(std::string("the scene's ") + what + " need " + std::to_string(texels) +
+                " texels, more than the GPU's " + std::to_string(gpu.buffer_texels) + "; use --tracer embree");
+}
+
+void SceneTextures::bind() const {
+  triangles.bind(triangles_unit);
+  quadrics.bind(quadrics_unit);
+  forms.bind(forms_unit);
+}
+
+BufferTexture upload_ranges(const Geometry& geometry, const Treelets& treelets, const std::vector<KernelType>& types,
+                            const GpuInfo& gpu) {
+  require_texels((treelets.treelets.size() + 2) * types.size(), "treelets", gpu);
+  return texture_of(GL_RG32UI, ranges_of(geometry, treelets, types));
+}
+
+SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const GpuInfo& gpu) {
+  SceneTextures result = upload_primitives(scene, treelets.frame, treelets.triangles, treelets.quadrics, gpu);
+  result.ranges = upload_ranges(*scene.geometry, treelets, result.types, gpu);
+  result.bytes += result.ranges.buffer.bytes;
+  return result;
+}
+
+SceneTextures upload(const FlatScene& scene, const LocalFrame& frame, const GpuInfo& gpu) {
+  std::vector<std::uint32_t> triangles(scene.geometry->triangles.size()), quadrics(scene.geometry->quadrics.size());
+  std::iota(triangles.begin(), triangles.end(), 0u);
+  std::iota(quadrics.begin(), quadrics.end(), 0u);
+  return upload_primitives(scene, frame, triangles, quadrics, gpu);
 }
 
 }  // namespace rayengine

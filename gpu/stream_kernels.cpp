@@ -57,7 +57,7 @@ void StreamKernels::test(std::uint32_t round, std::size_t type, float state) con
 
 /// Where there is one type all rays that are not done are in one state; else those that have primitives of the type in
 /// their treelet get a state of its own, above those before it.
-void StreamKernels::test_types(const SceneTextures& scene, std::uint32_t round) const {
+void StreamKernels::test_types(std::uint32_t round) const {
   for (std::size_t type = 0; type < tests_.size(); ++type) {
     float state = state_start;
     if (tests_.size() > 1) {
@@ -65,8 +65,6 @@ void StreamKernels::test_types(const SceneTextures& scene, std::uint32_t round) 
       use(*select_, round, type);
       draw_states(state);
     }
-    const bool triangles = scene.types[type] == TreeletPrimitive::triangle;
-    (triangles ? scene.triangles : scene.quadrics).bind(primitives_unit);
     test(round, type, state);
   }
 }
@@ -78,7 +76,7 @@ void StreamKernels::run(const StreamBatch& batch, const SceneTextures& scene, st
   glEnable(GL_DEPTH_TEST);
   batch.bind();
   scene.ranges.bind(ranges_unit);
-  scene.forms.bind(forms_unit);
+  scene.bind();
   for (std::uint32_t round = 0; round < rounds; ++round) {
     if (round > 0) {
       glBeginConditionalRender(tested_[round - 1].id(), GL_QUERY_NO_WAIT);
@@ -86,7 +84,7 @@ void StreamKernels::run(const StreamBatch& batch, const SceneTextures& scene, st
       draw_states(state_done);
     }
     glBeginQuery(GL_ANY_SAMPLES_PASSED, tested_[round].id());
-    test_types(scene, round);
+    test_types(round);
     glEndQuery(GL_ANY_SAMPLES_PASSED);
     if (round > 0) glEndConditionalRender();
   }

@@ -32,7 +32,7 @@ class StreamKernels {
   void use(const Program& program, std::uint32_t round, std::size_t type) const;
   void draw_states(float state) const;
   void test(std::uint32_t round, std::size_t type, float state) const;
-  void test_types(const SceneTextures& scene, std::uint32_t round) const;
+  void test_types(std::uint32_t round) const;
 
   std::optional<Program> settle_, select_;
   std::vector<Program> tests_;              // by type
