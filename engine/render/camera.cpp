@@ -35,9 +35,13 @@ CameraFrame::CameraFrame(const Camera& camera) : from_(camera.from), middle_(0.5
   right_ *= pixel;
 }
 
+glm::dvec3 CameraFrame::direction(double x, double y) const {
+  return center_ + (x - middle_.x) * right_ + (middle_.y - y) * up_;
+}
+
 Ray CameraFrame::ray(double x, double y) const {
-  const glm::dvec3 direction = center_ + (x - middle_.x) * right_ + (middle_.y - y) * up_;
-  return {from_, 0, direction / std::sqrt(glm::dot(direction, direction)), infinity};
+  const glm::dvec3 d = direction(x, y);
+  return {from_, 0, d / std::sqrt(glm::dot(d, d)), infinity};
 }
 
 Ray camera_ray(const Camera& camera, double x, double y) { return CameraFrame(camera).ray(x, y); }

@@ -12,6 +12,8 @@ class CameraFrame {
   /// Throws Error when the camera looks nowhere: no distance to `at`, `up` along the view, or an angle out of (0, 180).
   explicit CameraFrame(const Camera& camera);
 
+  /// From the eye to pixel coordinates (x, y), at unit distance along the view.
+  glm::dvec3 direction(double x, double y) const;
   /// The ray through pixel coordinates (x, y), in pixels from the upper left corner; its direction has unit length.
   Ray ray(double x, double y) const;
 

@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include <compare>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "gpu/gpu_report.h"
 #include "gpu/objects_tracer.h"
+#include "gpu/points_caster.h"
 #include "gpu/ray_caster.h"
 #include "gpu/stream_tracer.h"
 #include "tests/temporary.h"
@@ -18,11 +20,20 @@
 namespace rayengine {
 namespace {
 
-std::set<std::string> overheard;
+struct Overheard {
+  std::string source;
+  GLint stage;
+  auto operator<=>(const Overheard&) const = default;
+};
+std::set<Overheard> overheard;
 decltype(glShaderSource) driver_source = nullptr;
 
 void overhear(GLuint shader, GLsizei count, const GLchar* const* text, const GLint* lengths) {
-  overheard.insert(text[0]);
+  if (shader) {
+    GLint stage = 0;
+    glGetShaderiv(shader, GL_SHADER_TYPE, &stage);
+    overheard.insert({text[0], stage});
+  }
   driver_source(shader, count, text, lengths);
 }
 
@@ -56,6 +67,19 @@ std::shared_ptr<const Geometry> one_of_each_type() {
   return builder.build();
 }
 
+void cast_points() {
+  GeometryBuilder builder;
+  builder.add(Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}});
+  const auto triangle = builder.build();
+  using Method = PointsOptions::Method;
+  const std::vector<CastLight> lights(1);
+  const std::vector<CastMaterial> materials(1);
+  for (const Method method : {Method::points, Method::points_without_gs, Method::fragment})
+    for (const bool fat : {false, true})
+      PointsCaster(triangle, lights, materials, glm::vec3(0), {.method = method, .fat = fat, .reflections = 1})
+          .cast({{0, 0, 4}, {0, 0, -1}, {.1, 0, 0}, {0, .1, 0}, 4, 4});
+}
+
 void compile_everything() {
   const auto geometry = one_of_each_type();
   report_on_gpu();
@@ -65,11 +89,16 @@ void compile_everything() {
   make_objects_tracer(geometry, Precision::fast);
   const std::vector<CastMaterial> materials(1);
   RayCaster(geometry, {}, materials);
+  cast_points();
 }
 
-std::string stage(const std::string& source) {
-  if (source.find("local_size_x") != std::string::npos) return "comp";
-  return source.find("gl_Position") != std::string::npos ? "vert" : "frag";
+const char* extension(GLint stage) {
+  switch (stage) {
+    case GL_VERTEX_SHADER: return ".vert";
+    case GL_GEOMETRY_SHADER: return ".geom";
+    case GL_COMPUTE_SHADER: return ".comp";
+    default: return ".frag";
+  }
 }
 
 TEST(Portability, EveryShaderIsGlslAsTheStandardHasIt) {
@@ -82,7 +111,7 @@ TEST(Portability, EveryShaderIsGlslAsTheStandardHasIt) {
   EXPECT_GE(overheard.size(), 3 * (quadric_type_count + 1));
   const test::TemporaryFolder folder;
   int count = 0;
-  for (const std::string& source : overheard) folder.write(std::to_string(count++) + "." + stage(source), source);
+  for (const auto& [source, stage] : overheard) folder.write(std::to_string(count++) + extension(stage), source);
   const std::string command = "cd '" + folder.path().string() + "' && glslangValidator *.* > log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << std::ifstream(folder.path() / "log").rdbuf();
 }

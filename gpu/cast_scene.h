@@ -1,0 +1,58 @@
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "accel/treelets.h"
+#include "gpu/context.h"
+#include "gpu/flat_scene.h"
+#include "gpu/points_caster.h"
+#include "gpu/program.h"
+#include "gpu/scene_textures.h"
+#include "gpu/shading_textures.h"
+
+namespace rayengine {
+
+/// Sources of shaders in gpu/shaders/points, each of which needs those before it.
+using Sources = std::vector<std::string_view>;
+Sources operator+(Sources a, const Sources& b);
+
+/// What every way to cast a picture shares: the scene on the device, what shaders are made of, and the view.
+class CastScene {
+ public:
+  CastScene(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
+            std::span<const CastMaterial> materials, const glm::vec3& background, const PointsOptions& options);
+
+  Context& context() { return context_; }
+  const PointsOptions& options() const { return options_; }
+  GLsizei lights() const { return lights_; }
+  bool shadows() const { return options_.shadows && lights_ > 0; }
+  bool sees_background() const { return background_ != glm::vec3(0); }
+
+  /// Rays, as `format` lays them out, and the view.
+  Sources ray_sources() const;
+  /// After those: the intersection with the scene, and what happens at surfaces.
+  static Sources tracing_sources();
+  static Sources shading_sources();
+  std::vector<std::string> defines() const;
+
+  void bind() const;
+  /// Makes a program current, with the uniforms of the scene and the view.
+  void use(const Program& program, const CastView& view) const;
+
+ private:
+  PointsOptions options_;
+  Context context_;
+  FlatScene scene_;
+  Treelets list_;
+  FloatBox box_;  // of the whole scene
+  SceneTextures textures_;
+  ShadingTextures shading_;
+  GLsizei lights_;
+  glm::vec3 background_;
+};
+
+}  // namespace rayengine

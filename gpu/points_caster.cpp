@@ -1,0 +1,89 @@
+#include "gpu/points_caster.h"
+
+#include <chrono>
+#include <ctime>
+
+#include "gpu/await.h"
+#include "gpu/cast_method.h"
+#include "gpu/gl_thread.h"
+
+namespace rayengine {
+
+/// Made, used and destroyed on the thread of its context.
+class PointsCaster::Device {
+ public:
+  Device(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
+         std::span<const CastMaterial> materials, const glm::vec3& background, const PointsOptions& options)
+      : scene_(std::move(geometry), lights, materials, background, options) {}
+
+  void draw(const CastView& view) {
+    if (color_.width != view.width || color_.height != view.height) resize(view);
+    scene_.bind();
+    glBindFramebuffer(GL_FRAMEBUFFER, frame_.id());
+    glViewport(0, 0, view.width, view.height);
+    method_->draw(view, frame_.id());
+    await(Fence(), scene_.context());
+    method_->check();
+  }
+
+  std::vector<glm::vec3> read() const {
+    std::vector<glm::vec3> colors(static_cast<std::size_t>(color_.width) * static_cast<std::size_t>(color_.height));
+    glGetTextureImage(color_.object.id(), 0, GL_RGB, GL_FLOAT, static_cast<GLsizei>(colors.size() * sizeof colors[0]),
+                      colors.data());
+    return colors;
+  }
+
+ private:
+  void resize(const CastView& view) {
+    method_.reset();
+    color_ = {};
+    method_ = make_method(view);
+    color_ = make_texture(GL_RGBA32F, view.width, view.height);
+    glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, color_.object.id(), 0);
+  }
+
+  std::unique_ptr<CastMethod> make_method(const CastView& view) {
+    switch (scene_.options().method) {
+      case PointsOptions::Method::points: return make_points_method(scene_, view);
+      case PointsOptions::Method::points_without_gs: return make_vertex_method(scene_, view);
+      case PointsOptions::Method::fragment: break;
+    }
+    return make_fragment_method(scene_);
+  }
+
+  CastScene scene_;
+  std::unique_ptr<CastMethod> method_;
+  Texture color_;
+  Framebuffer frame_ = make_framebuffer();
+};
+
+PointsCaster::PointsCaster(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
+                           std::span<const CastMaterial> materials, const glm::vec3& background,
+                           const PointsOptions& options)
+    : thread_(std::make_unique<GlThread>()) {
+  thread_->run([&] { device_ = std::make_unique<Device>(geometry, lights, materials, background, options); });
+}
+
+PointsCaster::~PointsCaster() {
+  thread_->run([this] { device_.reset(); });
+}
+
+std::vector<glm::vec3> PointsCaster::cast(const CastView& view) {
+  return thread_->run([&] {
+    device_->draw(view);
+    return device_->read();
+  });
+}
+
+CastSeconds PointsCaster::time(const CastView& view) {
+  using Clock = std::chrono::steady_clock;
+  return thread_->run([&] {
+    const auto start = Clock::now();
+    const std::clock_t processor = std::clock();
+    device_->draw(view);
+    return CastSeconds{std::chrono::duration<double>(Clock::now() - start).count(),
+                       static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
+  });
+}
+
+}  // namespace rayengine

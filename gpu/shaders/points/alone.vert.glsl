@@ -1,0 +1,25 @@
+// Without a geometry shader: from each pixel's last ray that saw, the ray that follows of one kind, intersected. There is one
+// for every pixel, also where none follows; such rays are not shown.
+layout(location = 0) in uvec4 before[CARRIED];
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 16 * CARRIED) flat out uvec4 shown[CARRIED];
+layout(location = 10) uniform bool sees_background;
+layout(location = 13) uniform int kind;  // -2: the camera's; -1: reflected; else to the light of this number
+
+Ray follower(Ray ray) {
+  if (kind == -2) return eye_ray(ray.pixel);
+  if (ray.index == none) return Ray(ray.pixel, done, ray.role, 0, vec3(0), vec3(0), 0, none);
+#if defined(SHADOWS) || defined(REFLECTIONS)
+  Surface surface = surface_of(ray);
+  return kind == -1 ? reflected_ray(ray, surface) : shadow_ray(ray, surface, kind);
+#endif
+}
+
+void main() {
+  Ray ray = follower(from_carried(before));
+  bool goes = ray.state == waiting;
+  if (goes) trace(ray);
+  shown = carried_of(ray);
+  bool hit = ray.index != none;
+  bool seen = goes && (hit || (ray.role == sees && sees_background));
+  gl_Position = seen ? screen_position(ray.pixel) : vec4(2, 2, 0, 1);
+}

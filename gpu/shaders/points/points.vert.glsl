@@ -1,0 +1,10 @@
+// Intersects each ray, a point of a vertex buffer, with the scene.
+layout(location = 0) in uvec4 buffered[BUFFERED];
+layout(location = 0) flat out uvec4 carried[CARRIED];
+
+void main() {
+  Ray ray = from_buffer(buffered);
+  if (ray.state == fresh) ray = eye_ray(ray.pixel);
+  if (ray.state == waiting) trace(ray);
+  carried = carried_of(ray);
+}

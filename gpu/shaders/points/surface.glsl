@@ -1,0 +1,46 @@
+// The surface that a ray has hit, and the rays that go on from it. After shade.glsl.
+struct Surface {
+  vec3 position;
+  vec3 normal;  // faces the ray
+  vec3 view;
+  Finish finish;
+};
+
+// How far rays start off the surface, in the frame, where the scene is 2 wide: the error of a hit in single precision.
+const float clearance = 1.0 / (1 << 17);
+
+// Reflections that bring less are not traced.
+const float least_weight = 1.0 / 2048;
+
+Surface surface_of(Ray ray) {
+  vec3 normal = triangle_normal(int(ray.index));
+  Surface s;
+  s.position = ray.origin + ray.t * ray.direction;
+  s.normal = dot(normal, ray.direction) > 0 ? -normal : normal;
+  s.view = -normalize(ray.direction);
+  s.finish = finish_of(texelFetch(triangles, int(ray.index)).w);
+  return s;
+}
+
+// To a light; not waiting when the surface is turned away from it.
+Ray shadow_ray(Ray ray, Surface s, int light) {
+  vec3 origin = s.position + clearance * s.normal;
+  bool has_place = texelFetch(lights, 2 * light).w != 0;
+  vec3 way = towards_light(light, origin) * (has_place ? 1 : 16);  // out of the scene
+  return Ray(ray.pixel, dot(way, s.normal) > 0 ? waiting : done, uint(light) + 1u, 1, origin, way, 1, none);
+}
+
+// Not waiting when it would bring nothing.
+Ray reflected_ray(Ray ray, Surface s) {
+  float weight = ray.weight * s.finish.reflect;
+  return Ray(ray.pixel, weight >= least_weight ? waiting : done, sees, weight, s.position + clearance * s.normal,
+             reflect(-s.view, s.normal), far_away, none);
+}
+
+// What a ray sees of the light that the surface reflects, were it not in shadow.
+vec3 lit_by(int light, Ray ray, Surface s) {
+  return ray.weight * from_light(light, s.finish, s.normal, normalize(towards_light(light, s.position)), s.view);
+}
+
+// What it sees whatever the lights.
+vec3 unlit(Ray ray, Surface s) { return ray.weight * s.finish.ambient * s.finish.color; }
