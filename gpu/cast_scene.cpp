@@ -1,7 +1,6 @@
 #include "gpu/cast_scene.h"
 
 #include "accel/tracer.h"
-#include "gpu/kernel_program.h"
 #include "gpu/probe.h"
 
 namespace rayengine {
@@ -90,7 +89,7 @@ std::vector<std::string> CastScene::defines() const {
 }
 
 void CastScene::bind() const {
-  textures_.triangles.bind(primitives_unit);
+  textures_.bind();
   shading_.bind();
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
