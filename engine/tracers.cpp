@@ -7,6 +7,7 @@
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
 #include "engine/hybrid/hybrid_tracer.h"
+#include "gpu/cones_tracer.h"
 #include "gpu/hardware.h"
 #include "gpu/objects_tracer.h"
 #include "gpu/stream_tracer.h"
@@ -37,6 +38,12 @@ std::unique_ptr<Tracer> make_stream(std::shared_ptr<const Geometry> geometry, co
 
 std::unique_ptr<Tracer> make_objects(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
   return make_objects_tracer(std::move(geometry), options.precision, options.gpu);
+}
+
+std::unique_ptr<Tracer> make_cones(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  ConesOptions cones;
+  cones.device = options.gpu;
+  return make_cones_tracer(std::move(geometry), options.precision, cones);
 }
 
 /// Seconds of work after which a GPU is looked for: many times what the looking costs.
@@ -83,6 +90,10 @@ constexpr std::array registry{
     Entry{{"objects", "GPU: Wood, McCane and King's ray caster, one pass an object; for small scenes"},
           make_objects,
           objects_precisions},
+    Entry{
+        {"cones", "GPU: Szecsi's hierarchical ray engine, tiles of rays in cones; for small scenes and coherent rays"},
+        make_cones,
+        stream_precisions},
     Entry{{"hybrid", "CPU and GPU: embree and stream answer the same rays together, each what it is faster at"},
           make_hybrid,
           embree_precisions},

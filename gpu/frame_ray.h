@@ -24,6 +24,10 @@ struct FrameRay {
 
 FrameRay in_frame(const LocalFrame& frame, const Ray& ray);
 
+/// The same, begun early enough for t' never to be below zero where the ray meets what the frame holds: its tmin may be
+/// less than nothing.
+FrameRay in_frame_from_tmin(const LocalFrame& frame, const Ray& ray);
+
 /// What rounding in single precision can make of t in the frame, generously: for choices that must not miss anything.
 inline double frame_slack(double frame_t) { return 0x1p-19 * (4 + std::abs(frame_t)); }
 

@@ -34,19 +34,28 @@ std::string test_call(KernelType type, const std::string& index) {
   return "test_unit(" + index + ", " + form_of(quadric) + ", " + traits_of(quadric) + ")";
 }
 
-Program make_kernel_program(KernelType type, const std::vector<std::string_view>& ray_sources,
-                            std::vector<std::string> defines) {
+std::string_view kernel_name(KernelType type) {
+  return type == TreeletPrimitive::triangle ? "triangle" : to_string(static_cast<QuadricType>(type));
+}
+
+Stage kernel_stage(KernelType type, const std::vector<std::string_view>& ray_sources,
+                   std::vector<std::string> defines) {
   const bool triangle = type == TreeletPrimitive::triangle;
-  Stage stage{0, {"accel/kernels/prelude.glsl"}, std::move(defines)};
+  Stage stage{GL_FRAGMENT_SHADER, {"accel/kernels/prelude.glsl"}, std::move(defines)};
   stage.sources.push_back(triangle ? "accel/kernels/triangle.glsl" : "accel/kernels/quadric.glsl");
   stage.sources.insert(stage.sources.end(), ray_sources.begin(), ray_sources.end());
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.glsl" : "gpu/shaders/stream/quadric.glsl");
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.frag.glsl" : "gpu/shaders/stream/quadric.frag.glsl");
-  if (triangle) return make_screen_program("triangle", std::move(stage));
+  if (triangle) return stage;
   const auto quadric = static_cast<QuadricType>(type);
   stage.defines.push_back("TEST(i)=" + test_call(type, "i"));
   stage.defines.push_back(quadric == QuadricType::general ? "GENERAL" : "FORM=" + form_of(quadric));
-  return make_screen_program(to_string(quadric), std::move(stage));
+  return stage;
+}
+
+Program make_kernel_program(KernelType type, const std::vector<std::string_view>& ray_sources,
+                            std::vector<std::string> defines) {
+  return make_screen_program(kernel_name(type), kernel_stage(type, ray_sources, std::move(defines)));
 }
 
 }  // namespace rayengine

@@ -16,8 +16,14 @@ enum KernelLocation : GLint { round_location = 1, type_location = 2, types_locat
 /// The call, as GLSL, that tests the primitive of this type whose texels begin at `index`.
 std::string test_call(KernelType type, const std::string& index);
 
+/// The name of a type, for messages.
+std::string_view kernel_name(KernelType type);
+
 /// The intersection shader for one type of primitive, over the shared kernel source. `ray_sources` say how rays and
 /// hits are read and written: begin(), consider(), enough() and end().
+Stage kernel_stage(KernelType type, const std::vector<std::string_view>& ray_sources, std::vector<std::string> defines);
+
+/// The same, drawn over every texel of the viewport.
 Program make_kernel_program(KernelType type, const std::vector<std::string_view>& ray_sources,
                             std::vector<std::string> defines);
 

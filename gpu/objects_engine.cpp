@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "gpu/batches.h"
 #include "gpu/kernel_program.h"
 #include "gpu/probe.h"
 
@@ -91,18 +92,12 @@ void ObjectsEngine::cast(std::span<const Traveller> travellers) {
 }
 
 void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
-  std::vector<Traveller> travellers;
-  for (std::size_t next = 0; next < rays.size() || !travellers.empty();) {
-    for (; next < rays.size() && travellers.size() < batch_rays(); ++next)
-      if (is_valid(rays[next])) travellers.push_back(set_out(static_cast<std::uint32_t>(next), rays[next]));
+  const auto depart = [this](std::uint32_t index, const Ray& ray) { return set_out(index, ray); };
+  const auto answer = [this](std::span<Traveller> travellers) {
     cast(travellers);
     batch_->read_back(travellers, context_);
-    std::erase_if(travellers, [&](Traveller& t) {
-      if (arrive(t) == Next::done) return true;
-      look_behind(t);
-      return false;
-    });
-  }
+  };
+  trace_in_batches(rays, batch_rays(), depart, answer, arrive);
 }
 
 }  // namespace rayengine

@@ -13,8 +13,9 @@ std::array<Texture, 4> make_inputs(GLsizei side) {
 
 }  // namespace
 
-StreamBatch::StreamBatch(GLsizei side)
+StreamBatch::StreamBatch(GLsizei side, GLsizei block)
     : side_(side),
+      block_(block),
       upload_(make_mapped_buffer(4 * section(), Mapping::upload)),
       read_back_(make_mapped_buffer(capacity() * sizeof(Answer), Mapping::read_back)),
       inputs_(make_inputs(side)),
@@ -25,13 +26,15 @@ StreamBatch::StreamBatch(GLsizei side)
 }
 
 std::size_t StreamBatch::place(std::size_t i) const {
-  const auto side = static_cast<std::size_t>(side_);
-  const std::size_t block_row = i / (4 * side), column = i % (4 * side) / 16 * 4 + i % 4, row = i % 16 / 4;
-  return (4 * block_row + row) * side + column;
+  const auto side = static_cast<std::size_t>(side_), block = static_cast<std::size_t>(block_);
+  const std::size_t of_block = i / (block * block), in_block = i % (block * block);
+  const std::size_t column = of_block % (side / block) * block + in_block % block;
+  const std::size_t row = of_block / (side / block) * block + in_block / block;
+  return row * side + column;
 }
 
 std::size_t StreamBatch::rays_in_blocks(std::size_t count) const {
-  const std::size_t block_row = 4 * static_cast<std::size_t>(side_);
+  const std::size_t block_row = static_cast<std::size_t>(block_) * static_cast<std::size_t>(side_);
   return (count + block_row - 1) / block_row * block_row;
 }
 

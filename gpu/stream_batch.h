@@ -22,8 +22,9 @@ inline constexpr float state_start = 0, state_done = 1;
 /// there.
 class StreamBatch {
  public:
-  /// `side` x `side` rays; a multiple of 4.
-  explicit StreamBatch(GLsizei side);
+  /// `side` x `side` rays, in blocks of `block` x `block`, of which `side` is a multiple. Neighbours among the rays
+  /// have most in common, and devices shade blocks of texels in step.
+  explicit StreamBatch(GLsizei side, GLsizei block = 4);
 
   std::size_t capacity() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
 
@@ -40,8 +41,7 @@ class StreamBatch {
   };
   std::span<const Answer> answers() const { return read_back_.as<const Answer>(0, capacity()); }
 
-  /// The place of ray `i` in the spans. Rays fill blocks of 4 x 4 texels, since devices shade blocks of texels in step
-  /// and neighbours among the rays have most in common.
+  /// The place of ray `i` in the spans: rays fill block after block.
   std::size_t place(std::size_t i) const;
 
   /// Fills the textures from the first `count` rays, and clears hits and states. Lists must be filled up to the end of
@@ -51,6 +51,10 @@ class StreamBatch {
   /// Binds the textures and the target, and limits drawing to the rows in use.
   void bind() const;
   void read_back();
+  /// Bits of t, and ranks, as the passes leave them.
+  const Texture& hits() const { return hits_; }
+  /// The rows in use.
+  GLsizei rows() const { return rows_; }
   /// Of the last upload and read-back.
   std::size_t bytes_carried() const { return rays_in_blocks(count_) * (4 * sizeof(glm::vec4) + sizeof(Answer)); }
   /// Waits for the answers. Throws Error when there is no hope of them, or they mean nothing.
@@ -59,7 +63,7 @@ class StreamBatch {
  private:
   std::size_t section() const { return capacity() * sizeof(glm::vec4); }
 
-  GLsizei side_, rows_ = 0;
+  GLsizei side_, block_, rows_ = 0;
   std::size_t count_ = 0;
   MappedBuffer upload_, read_back_;
   std::array<Texture, 4> inputs_;

@@ -4,99 +4,22 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 
 #include "accel/kernels/kernels.h"
 #include "accel/rounding.h"
-#include "engine/measure/random.h"
+#include "tests/ray_tiles.h"
 
 namespace rayengine {
 namespace {
 
-using Wide = __float128;
+using test::holds, test::Point, test::somewhere, test::bundle, test::Tile, test::Wide;
 
-struct Point {
-  Wide x, y, z;
-  Point(Wide x, Wide y, Wide z) : x(x), y(y), z(z) {}
-  explicit Point(const glm::vec3& v) : x(v.x), y(v.y), z(v.z) {}
-  Point operator+(const Point& b) const { return {x + b.x, y + b.y, z + b.z}; }
-  Point operator-(const Point& b) const { return {x - b.x, y - b.y, z - b.z}; }
-};
-Wide dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-/// Whether the cone holds a point: |across| cos <= along sin, both sides squared.
-bool holds(const RayCone& cone, const Point& p) {
-  if (cone.cosine < 0) return true;
-  const Point axis(cone.axis), w = p - Point(cone.apex);
-  const Wide along = dot(w, axis), axis_square = dot(axis, axis);
-  const Wide across = dot(w, w) * axis_square - along * along;
-  return along >= 0 && across * cone.cosine * cone.cosine <= along * along * cone.sine * cone.sine;
-}
-
-using Tile = std::vector<ConeRay>;
-
-glm::vec3 somewhere(Random& random, double size) {
-  return glm::vec3(size * random.between(-1, 1), size * random.between(-1, 1), size * random.between(-1, 1));
-}
-
-/// Directions within `spread` of one, origins within `size` of one.
-Tile bundle(Random& random, std::size_t count, double spread, double size) {
-  const glm::vec3 axis(random.direction()), center = somewhere(random, 1);
-  Tile tile;
-  for (std::size_t i = 0; i < count; ++i)
-    tile.push_back({center + somewhere(random, size), axis + glm::vec3(spread * random.unit() * random.direction())});
-  return tile;
-}
-
-Tile changed(Tile tile, const std::function<void(ConeRay&, std::size_t)>& change) {
-  for (std::size_t i = 0; i < tile.size(); ++i) change(tile[i], i);
-  return tile;
-}
-
-struct Kind {
-  const char* name;
-  std::function<Tile(Random&)> make;
-};
-
-const std::array kinds{
-    Kind{"coherent", [](Random& r) { return bundle(r, 256, .05, .01); }},
-    Kind{"pinhole", [](Random& r) { return bundle(r, 256, .3, 0); }},
-    Kind{"one_ray", [](Random& r) { return bundle(r, 1, 0, 0); }},
-    Kind{"two_rays", [](Random& r) { return bundle(r, 2, 1, 1); }},
-    Kind{"identical", [](Random& r) { return Tile(256, bundle(r, 1, 0, 0).front()); }},
-    Kind{"parallel", [](Random& r) { return bundle(r, 256, 0, std::pow(10, r.between(-6, 2))); }},
-    Kind{"nearly_parallel", [](Random& r) { return bundle(r, 256, std::pow(10, r.between(-8, -2)), .1); }},
-    Kind{"wide", [](Random& r) { return bundle(r, 64, r.between(.8, 1.3), .1); }},
-    Kind{"all_directions", [](Random& r) { return bundle(r, 256, 100, .1); }},
-    Kind{"opposite",
-         [](Random& r) {
-           return changed(bundle(r, 256, 0, .1), [](ConeRay& ray, std::size_t i) {
-             if (i % 2) ray.direction = -ray.direction;
-           });
-         }},
-    Kind{"tiny", [](Random& r) { return bundle(r, 256, .1, std::pow(10, r.between(-30, -10))); }},
-    Kind{"huge", [](Random& r) { return bundle(r, 256, .1, std::pow(10, r.between(3, 12))); }},
-    Kind{"too_far", [](Random& r) { return bundle(r, 256, .1, std::pow(10, r.between(14, 37))); }},
-    Kind{"set_out_behind_each_other",
-         [](Random& r) {
-           return changed(bundle(r, 256, .1, 0), [&](ConeRay& ray, std::size_t) {
-             ray.origin -= static_cast<float>(r.between(-4, 4)) * ray.direction;
-           });
-         }},
-    Kind{"any_length_of_direction",
-         [](Random& r) {
-           return changed(bundle(r, 256, .1, .1), [&](ConeRay& ray, std::size_t) {
-             ray.direction *= static_cast<float>(std::pow(10, r.between(-15, 15)));
-           });
-         }},
-};
-
-class ConeOf : public testing::TestWithParam<Kind> {};
-INSTANTIATE_TEST_SUITE_P(Tiles, ConeOf, testing::ValuesIn(kinds), [](const auto& info) { return info.param.name; });
+class ConeOf : public testing::TestWithParam<test::TileKind> {};
+INSTANTIATE_TEST_SUITE_P(Tiles, ConeOf, testing::ValuesIn(test::tile_kinds),
+                         [](const auto& info) { return info.param.name; });
 
 constexpr std::uint64_t tiles = 300;
 
@@ -106,11 +29,7 @@ TEST_P(ConeOf, HoldsItsRays) {
     const Tile tile = GetParam().make(random);
     const RayCone cone = enclosing_cone(tile);
     ASSERT_LE(cone.cosine, 1);
-    for (const ConeRay& ray : tile) {
-      // Two points suffice, the cone being convex, one of them at infinity.
-      ASSERT_TRUE(holds(cone, Point(ray.origin))) << "tile " << seed;
-      ASSERT_TRUE(holds(cone, Point(cone.apex) + Point(ray.direction))) << "tile " << seed;
-    }
+    for (const ConeRay& ray : tile) ASSERT_TRUE(holds(cone, ray)) << "tile " << seed;
   }
 }
 
