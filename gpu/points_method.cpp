@@ -28,7 +28,7 @@ class PointsMethod : public CastMethod {
   PointsMethod(CastScene& scene, const CastView& view)
       : scene_(scene),
         program_(make_program(scene)),
-        target_(view.width, view.height, 1 + scene.lights(), 1 + scene.options().reflections),
+        target_(view.width, view.height, scene.targets(), scene.layers()),
         fresh_(fresh_rays(format(), view)) {
     for (int i = 0; i < std::min(2, passes() - 1); ++i) streams_.emplace_back(room(view), format());
     counts_.resize(static_cast<std::size_t>(passes() - 1));

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "gpu/cast_method.h"
 #include "gpu/fresh_rays.h"
 #include "gpu/layered_target.h"
@@ -26,7 +28,7 @@ class VertexMethod : public CastMethod {
   VertexMethod(CastScene& scene, const CastView& view)
       : scene_(scene),
         program_(make_program(scene)),
-        target_(view.width, view.height, 1 + scene.lights(), 1 + scene.options().reflections),
+        target_(view.width, view.height, scene.targets(), scene.layers()),
         fresh_(fresh_rays(format(), view)) {
     for (int i = 0; i < 2 && (scene.shadows() || scene.options().reflections > 0); ++i)
       streams_.emplace_back(fresh_.capacity(), format());
@@ -38,7 +40,7 @@ class VertexMethod : public CastMethod {
     glUniform1i(sees_background_location, scene_.sees_background());
     const PointStream* from = &fresh_;
     for (GLsizei generation = 0; generation <= scene_.options().reflections; ++generation) {
-      target_.choose(generation);
+      target_.choose(std::min(generation, scene_.layers() - 1));
       const PointStream* to = streams_.empty() ? nullptr : &streams_[static_cast<std::size_t>(generation % 2)];
       if (to) to->begin_writing();
       draw_kind(generation == 0 ? camera : reflected, *from);

@@ -1,7 +1,12 @@
 // Without a geometry shader: from each pixel's last ray that saw, the ray that follows of one kind, intersected. There is one
 // for every pixel, also where none follows; such rays are not shown.
 layout(location = 0) in uvec4 before[CARRIED];
-layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 16 * CARRIED) flat out uvec4 shown[CARRIED];
+#ifdef FAT
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 64) flat out uvec4 shown[SHOWN];
+#else
+layout(location = 0) flat out uvec4 shown[SHOWN];
+layout(location = 2, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 48) flat out uvec4 kept[CARRIED];
+#endif
 layout(location = 10) uniform bool sees_background;
 layout(location = 13) uniform int kind;  // -2: the camera's; -1: reflected; else to the light of this number
 
@@ -18,7 +23,12 @@ void main() {
   Ray ray = follower(from_carried(before));
   bool goes = ray.state == waiting;
   if (goes) trace(ray);
-  shown = carried_of(ray);
+#ifdef FAT
+  shown = record(ray);
+#else
+  shown = shown_of(ray);
+  kept = carried_of(ray);
+#endif
   bool hit = ray.index != none;
   bool seen = goes && (hit || (ray.role == sees && sees_background));
   gl_Position = seen ? screen_position(ray.pixel) : vec4(2, 2, 0, 1);

@@ -2,6 +2,7 @@
 // direction, index; u, v, state, type. In u's place is the weight; v stays empty, since normals are worked out from corners.
 #define BUFFERED 4
 #define CARRIED 4
+#define SHOWN 4
 
 Ray from_record(uvec4 r[4]) {
   Ray ray;
@@ -24,3 +25,4 @@ uvec4[4] record(Ray ray) {
 Ray from_buffer(uvec4 r[BUFFERED]) { return from_record(r); }
 Ray from_carried(uvec4 r[CARRIED]) { return from_record(r); }
 uvec4[CARRIED] carried_of(Ray ray) { return record(ray); }
+Ray from_shown(uvec4 r[SHOWN]) { return from_record(r); }

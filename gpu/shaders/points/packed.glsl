@@ -2,6 +2,7 @@
 // the role (4 bits); the direction, with the weight. A ray that sees has no end, and one to a light ends at t = 1.
 #define BUFFERED 2
 #define CARRIED 3
+#define SHOWN 2
 
 const uint fresh_role = 15u;
 
@@ -45,4 +46,24 @@ uvec4[CARRIED] carried_of(Ray ray) {
   return uvec4[CARRIED](uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.t)),
                         uvec4(floatBitsToUint(ray.direction), ray.index),
                         uvec4(place_of(ray), floatBitsToUint(ray.weight), 0, 0));
+}
+
+// What the fragment shader needs: the position in place of what led there, and the role in place of a shadow ray's weight.
+uvec4[SHOWN] shown_of(Ray ray) {
+  float weight = ray.role == sees ? ray.weight : -float(ray.role);
+  return uvec4[SHOWN](uvec4(floatBitsToUint(ray.origin + ray.t * ray.direction), ray.index),
+                      uvec4(floatBitsToUint(ray.direction), floatBitsToUint(weight)));
+}
+
+Ray from_shown(uvec4 r[SHOWN]) {
+  Ray ray;
+  ray.pixel = uvec2(0);
+  ray.state = done;
+  ray.origin = uintBitsToFloat(r[0].xyz);
+  ray.t = 0;
+  ray.index = r[0].w;
+  ray.direction = uintBitsToFloat(r[1].xyz);
+  ray.weight = uintBitsToFloat(r[1].w);
+  ray.role = ray.weight < 0 ? uint(-ray.weight) : sees;
+  return ray;
 }

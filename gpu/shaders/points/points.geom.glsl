@@ -8,7 +8,7 @@ layout(location = 10) uniform bool sees_background;
 layout(location = 11) uniform int generation;  // of the rays that see, in this pass
 
 #ifdef FAT
-layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 64) flat out uvec4 shown[CARRIED];
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 64) flat out uvec4 shown[SHOWN];
 
 void show(Ray ray) {
   ray.state = done;
@@ -22,11 +22,11 @@ void send(Ray ray) {
   EmitVertex();
 }
 #else
-layout(stream = 0, location = 0) flat out uvec4 shown[CARRIED];
-layout(stream = 1, location = 3, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 32) flat out uvec4 sent[BUFFERED];
+layout(stream = 0, location = 0) flat out uvec4 shown[SHOWN];
+layout(stream = 1, location = 2, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 32) flat out uvec4 sent[BUFFERED];
 
 void show(Ray ray) {
-  shown = carried_of(ray);
+  shown = shown_of(ray);
   EmitStreamVertex(0);
 }
 
@@ -38,7 +38,9 @@ void send(Ray ray) {
 
 void place(Ray ray) {
   gl_Position = screen_position(ray.pixel);
+#ifdef SHADOWS
   gl_Layer = ray.role == sees ? generation : generation - 1;
+#endif
 }
 
 void main() {
