@@ -14,6 +14,9 @@ class CastMethod {
   /// Issues all that makes the picture, into `framebuffer`, which is bound and covers the viewport; nothing here waits
   /// for the device.
   virtual void draw(const CastView& view, GLuint framebuffer) = 0;
+  /// Issues one part of that, for the rays that the picture drawn last has left; shows nothing. Throws Error where the
+  /// method has no such parts.
+  virtual void draw_part(const CastView& view, PointsCaster::Part part);
   /// Of the picture drawn last. Throws Error where rays were lost; waits for the device.
   virtual void check() const {}
 };

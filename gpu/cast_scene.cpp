@@ -15,7 +15,6 @@ enum Location : GLint {
   view_right_location,
   view_down_location,
   screen_size_location,
-  background_location = 12,
 };
 
 /// A render target for each light beside the first, of the eight that OpenGL promises; their numbers take four bits.
@@ -105,7 +104,7 @@ void CastScene::use(const Program& program, const CastView& view) const {
   set(view_right_location, glm::vec3(view.right));
   set(view_down_location, glm::vec3(view.down));
   glUniform2f(screen_size_location, static_cast<float>(view.width), static_cast<float>(view.height));
-  set(background_location, background_);
+  set(program.uniform("background"), background_);  // which not all programs have
 }
 
 }  // namespace rayengine

@@ -26,6 +26,12 @@ class PointsCaster::Device {
     method_->check();
   }
 
+  void draw_part(const CastView& view, Part part) {
+    scene_.bind();
+    if (method_) method_->draw_part(view, part);
+    await(Fence(), scene_.context());
+  }
+
   std::vector<glm::vec3> read() const {
     std::vector<glm::vec3> colors(static_cast<std::size_t>(color_.width) * static_cast<std::size_t>(color_.height));
     glGetTextureImage(color_.object.id(), 0, GL_RGB, GL_FLOAT, static_cast<GLsizei>(colors.size() * sizeof colors[0]),
@@ -75,15 +81,26 @@ std::vector<glm::vec3> PointsCaster::cast(const CastView& view) {
   });
 }
 
-CastSeconds PointsCaster::time(const CastView& view) {
+namespace {
+
+template <class Work>
+CastSeconds timed(const Work& work) {
   using Clock = std::chrono::steady_clock;
-  return thread_->run([&] {
-    const auto start = Clock::now();
-    const std::clock_t processor = std::clock();
-    device_->draw(view);
-    return CastSeconds{std::chrono::duration<double>(Clock::now() - start).count(),
-                       static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
-  });
+  const auto start = Clock::now();
+  const std::clock_t processor = std::clock();
+  work();
+  return {std::chrono::duration<double>(Clock::now() - start).count(),
+          static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
+}
+
+}  // namespace
+
+CastSeconds PointsCaster::time(const CastView& view) {
+  return thread_->run([&] { return timed([&] { device_->draw(view); }); });
+}
+
+CastSeconds PointsCaster::time(const CastView& view, Part part) {
+  return thread_->run([&] { return timed([&] { device_->draw_part(view, part); }); });
 }
 
 }  // namespace rayengine

@@ -60,6 +60,15 @@ class PointsCaster {
   /// Draws `view` and waits until it is done, without reading it back.
   CastSeconds time(const CastView& view);
 
+  /// What the shaders of Method::points take, one stage after the other.
+  enum class Part {
+    vertex,    ///< intersecting the rays of every pass
+    geometry,  ///< that, and emitting those that follow
+  };
+  /// The same for one part of the work, on the rays that the picture drawn last has left: it must be of the same view.
+  /// Throws Error where there is no such part, or more than three passes, whose rays are not all left.
+  CastSeconds time(const CastView& view, Part part);
+
  private:
   class Device;
   std::unique_ptr<GlThread> thread_;

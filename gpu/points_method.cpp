@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "accel/tracer.h"
 #include "gpu/cast_method.h"
@@ -22,6 +24,15 @@ Program make_program(const CastScene& scene) {
        stage(GL_FRAGMENT_SHADER, CastScene::shading_sources() + Sources{"gpu/shaders/points/points.frag.glsl"})});
 }
 
+/// The vertex shader alone, whose results decide where off the screen points lie.
+Program make_vertex_stage(const CastScene& scene) {
+  Stage stage{GL_VERTEX_SHADER,
+              scene.ray_sources() + CastScene::tracing_sources() + Sources{"gpu/shaders/points/points.vert.glsl"},
+              scene.defines()};
+  stage.defines.push_back("NOTHING_FOLLOWS");
+  return Program("vertex stage", {stage});
+}
+
 /// The vertex shader intersects, the geometry shader emits, two vertex buffers take turns.
 class PointsMethod : public CastMethod {
  public:
@@ -36,19 +47,17 @@ class PointsMethod : public CastMethod {
 
   void draw(const CastView& view, GLuint framebuffer) override {
     target_.begin();
-    scene_.use(program_, view);
-    glUniform1i(sees_background_location, scene_.sees_background());
-    for (int pass = 0; pass + 1 < passes(); ++pass) {
-      const PointStream& to = streams_[static_cast<std::size_t>(pass % 2)];
-      const PointCount& count = counts_[static_cast<std::size_t>(pass)];
-      to.begin_writing();
-      count.begin(written_stream());
-      draw_pass(pass);
-      count.end(written_stream());
-      to.end_writing();
-    }
-    draw_pass(passes() - 1);
+    draw_passes(view);
     target_.add_up(framebuffer);
+  }
+
+  void draw_part(const CastView& view, PointsCaster::Part part) override {
+    if (passes() > 3)
+      throw Error("a picture of " + std::to_string(passes()) + " passes cannot be timed by parts, and one of 3 can");
+    if (part == PointsCaster::Part::vertex) return draw_vertex_stage(view);
+    glEnable(GL_RASTERIZER_DISCARD);
+    draw_passes(view);
+    glDisable(GL_RASTERIZER_DISCARD);
   }
 
   void check() const override {
@@ -76,9 +85,34 @@ class PointsMethod : public CastMethod {
     return std::max<std::size_t>(1, static_cast<std::size_t>(each * view.width * view.height));
   }
 
+  void draw_passes(const CastView& view) const {
+    scene_.use(program_, view);
+    glUniform1i(sees_background_location, scene_.sees_background());
+    for (int pass = 0; pass + 1 < passes(); ++pass) {
+      const PointStream& to = streams_[static_cast<std::size_t>(pass % 2)];
+      const PointCount& count = counts_[static_cast<std::size_t>(pass)];
+      to.begin_writing();
+      count.begin(written_stream());
+      draw_pass(pass);
+      count.end(written_stream());
+      to.end_writing();
+    }
+    draw_pass(passes() - 1);
+  }
+
+  void draw_vertex_stage(const CastView& view) {
+    if (!vertex_stage_) vertex_stage_.emplace(make_vertex_stage(scene_));
+    scene_.use(*vertex_stage_, view);
+    for (int pass = 0; pass < passes(); ++pass) draw_points(pass);
+  }
+
   void draw_pass(int pass) const {
     glUniform1i(reflects_location, pass < scene_.options().reflections);
     glUniform1i(generation_location, pass);
+    draw_points(pass);
+  }
+
+  void draw_points(int pass) const {
     if (pass == 0)
       fresh_.draw(static_cast<GLsizei>(fresh_.capacity()));
     else
@@ -87,6 +121,7 @@ class PointsMethod : public CastMethod {
 
   CastScene& scene_;
   Program program_;
+  std::optional<Program> vertex_stage_;
   LayeredTarget target_;
   PointStream fresh_;
   std::vector<PointStream> streams_;

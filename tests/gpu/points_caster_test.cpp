@@ -113,6 +113,24 @@ TEST(PointsCaster, PicturesOfOtherSizesMayFollow) {
   }
 }
 
+TEST(PointsCaster, PartsAreTimedWhereThereAreAny) {
+  const Scene scene = corner();
+  const CastView view = cast_view(scene.camera);
+  const auto caster = [&](const PointsOptions& options) {
+    return PointsCaster(scene.geometry, cast_lights(scene), cast_materials(scene), scene.background.color, options);
+  };
+  PointsCaster three_passes = caster({.reflections = 1});
+  const auto picture = three_passes.cast(view);
+  for (const auto part : {PointsCaster::Part::vertex, PointsCaster::Part::geometry})
+    EXPECT_GT(three_passes.time(view, part).elapsed, 0);
+  EXPECT_EQ(three_passes.cast(view), picture);
+  for (const PointsOptions& options : {PointsOptions{.reflections = 2}, PointsOptions{.method = Method::fragment}}) {
+    PointsCaster other = caster(options);
+    other.cast(view);
+    EXPECT_THROW(other.time(view, PointsCaster::Part::vertex), Error);
+  }
+}
+
 std::string complaint(const Scene& scene, const PointsOptions& options) {
   try {
     cast(scene, options);

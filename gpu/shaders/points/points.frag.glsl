@@ -1,7 +1,7 @@
 // What a ray that was intersected brings to its pixel. Blending adds it to alpha times what is there: rays that see keep what is
 // there, and one that finds its light hidden puts out what that light had brought, which has a target of its own.
 layout(location = 0) flat in uvec4 shown[SHOWN];
-layout(location = 12) uniform vec3 background;
+uniform vec3 background;
 layout(location = 0) out vec4 base;
 #ifdef SHADOWS
 layout(location = 1) out vec4 lit[LIGHTS];

@@ -7,4 +7,7 @@ void main() {
   if (ray.state == fresh) ray = eye_ray(ray.pixel);
   if (ray.state == waiting) trace(ray);
   carried = carried_of(ray);
+#ifdef NOTHING_FOLLOWS
+  gl_Position = vec4(2 + abs(ray.t), float(ray.index), 0, 1);  // off the screen, yet not known before
+#endif
 }

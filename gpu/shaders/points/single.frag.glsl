@@ -1,6 +1,6 @@
 // The baseline: all of a pixel's rays in one loop of one fragment shader.
 layout(location = 9) uniform int reflections;
-layout(location = 12) uniform vec3 background;
+uniform vec3 background;
 layout(location = 0) out vec4 color;
 
 vec3 seen_of_lights(Ray ray, Surface surface) {
