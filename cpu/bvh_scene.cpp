@@ -1,5 +1,9 @@
 #include "cpu/bvh_scene.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "cpu/moderate.h"
 #include "cpu/quadric_kind.h"
 
 namespace rayengine {
@@ -12,7 +16,30 @@ std::uint32_t leaf_size(const Geometry& geometry) {
   return geometry.triangles.size() > geometry.quadrics.size() ? width : 1;
 }
 
+/// Corners that are not numbers: no comparison lets them through.
+template <class T>
+TriangleBlock<T> empty_block() {
+  TriangleBlock<T> block{};
+  for (auto& corner : block.corners)
+    for (auto& axis : corner) std::fill(std::begin(axis), std::end(axis), std::numeric_limits<T>::quiet_NaN());
+  return block;
+}
+
+/// What makes up a general form, all of it zero or moderate.
+bool is_moderate(const GeneralForm& form) {
+  return std::all_of(form.matrix.begin(), form.matrix.end(), [](double a) { return std::abs(a) <= moderate_limit; });
+}
+
 }  // namespace
+
+const BvhQueries& bvh_queries() {
+  switch (best_isa()) {
+    case Isa::avx512: return avx512::bvh_queries;
+    case Isa::avx2: return avx2::bvh_queries;
+    case Isa::sse2: break;
+  }
+  return sse2::bvh_queries;
+}
 
 BvhLeaf BvhScene::leaf(const Treelet& treelet, std::uint32_t& blocks) const {
   const BvhLeaf leaf{blocks, treelet.triangle_count, treelet.first_quadric, treelet.quadric_count};
@@ -23,7 +50,7 @@ BvhLeaf BvhScene::leaf(const Treelet& treelet, std::uint32_t& blocks) const {
 template <class T>
 void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
   const BvhLeaf& last = leaves_.back();
-  blocks.resize(last.first_block + (last.triangle_count + width - 1) / width);
+  blocks.resize(last.first_block + (last.triangle_count + width - 1) / width, empty_block<T>());
   const std::uint32_t* id = treelets_.triangles.data();
   for (const BvhLeaf& leaf : leaves_) {
     for (std::uint32_t i = 0; i < leaf.triangle_count; ++i, ++id) {
@@ -44,8 +71,8 @@ BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry) : geometry_(std::mo
   leaves_.push_back(leaf(treelets_.unbounded, blocks));
   const bool exact = geometry_->exact_vertices.empty();
   exact ? fill(float_blocks_) : fill(double_blocks_);
-  for (const std::uint32_t i : treelets_.quadrics)
-    kinds_.push_back(static_cast<std::uint8_t>(kind_of(geometry_->quadrics[i])));
+  for (const std::uint32_t i : treelets_.quadrics) add_quadric(geometry_->quadrics[i]);
+  bound_corners();
 
   if (!treelets_.treelets.empty()) static_cast<WalkSpace&>(job_) = walk_space(treelets_);
   job_.geometry = geometry_.get();
@@ -55,12 +82,32 @@ BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry) : geometry_(std::mo
   job_.double_blocks = exact ? nullptr : double_blocks_.data();
   job_.quadrics = treelets_.quadrics.data();
   job_.kinds = kinds_.data();
+  job_.norms = norms_.data();
+}
+
+void BvhScene::add_quadric(const Quadric& quadric) {
+  kinds_.push_back(static_cast<std::uint8_t>(kind_of(quadric)));
+  norms_.push_back(norm_of(quadric.to_object.linear));
+  moderate_ = moderate_ && is_moderate(norms_.back()) &&
+              largest_component(quadric.to_object.origin) <= moderate_limit &&
+              (quadric.type != QuadricType::general || is_moderate(geometry_->forms[quadric.form]));
+}
+
+void BvhScene::bound_corners() {
+  Box box;
+  for (const glm::uvec3& triangle : geometry_->triangles)
+    for (int corner = 0; corner < 3; ++corner) box.add(geometry_->vertex(triangle[corner]));
+  if (box.empty()) box = {glm::dvec3(0), glm::dvec3(0)};
+  moderate_ = moderate_ && box.extent() <= moderate_limit;
+  for (int axis = 0; axis < 3; ++axis)
+    job_.corner_lower[axis] = box.lower[axis], job_.corner_upper[axis] = box.upper[axis];
 }
 
 std::size_t BvhScene::bytes() const {
   return treelets_.bytes() + leaves_.capacity() * sizeof(BvhLeaf) +
          float_blocks_.capacity() * sizeof(TriangleBlock<float>) +
-         double_blocks_.capacity() * sizeof(TriangleBlock<double>) + kinds_.capacity();
+         double_blocks_.capacity() * sizeof(TriangleBlock<double>) + kinds_.capacity() +
+         norms_.capacity() * sizeof(double);
 }
 
 }  // namespace rayengine

@@ -265,6 +265,7 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
     const glm::vec3 normal(glm::normalize(triangle_normal(*level.geometry, e.prim)));
     triangle_hit({0, e.u, e.v, normal, e.geom, e.prim, e.inst}, level, e.t, hit);
   }
+  sort_hits(hits);
   return hits;
 }
 

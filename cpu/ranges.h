@@ -21,17 +21,18 @@ void for_ranges(std::size_t count, Work&& work) {
                     [&](const auto& range) { work(range.begin() * grain, std::min(range.end() * grain, count)); });
 }
 
-/// The lists of hits that `list_of(i)` finds for each of `count` rays, sorted.
+inline void sort_hits(std::vector<Hit>& hits) {
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
+  });
+}
+
+/// The lists of hits that `list_of(i)` finds for each of `count` rays, in order.
 template <class ListOf>
 HitLists all_lists(std::size_t count, ListOf&& list_of) {
   std::vector<std::vector<Hit>> lists(count);
   for_ranges(count, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      lists[i] = list_of(i);
-      std::sort(lists[i].begin(), lists[i].end(), [](const Hit& a, const Hit& b) {
-        return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
-      });
-    }
+    for (std::size_t i = first; i < last; ++i) lists[i] = list_of(i);
   });
   HitLists result;
   result.offsets.push_back(0);

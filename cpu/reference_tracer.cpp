@@ -2,77 +2,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "accel/stopwatch.h"
+#include "cpu/reference/sinks.h"
 #include "cpu/reference/walk.h"
 
 namespace rayengine {
 namespace {
-
-using reference::Candidate;
-
-class Closest final : public reference::Sink {
- public:
-  explicit Closest(const Ray& ray) : ray_(ray) {}
-
-  void add(const Candidate& candidate) override {
-    const int order = best_ ? reference::compare_t(ray_, candidate, *best_) : -1;
-    if (order <= 0) tied_ = order == 0;
-    if (!best_ || reference::before(ray_, candidate, *best_)) best_ = candidate;
-  }
-  double reach() const override { return best_ ? std::min(static_cast<double>(best_->at.t), ray_.tmax) : ray_.tmax; }
-
-  Hit hit() const {
-    if (!best_) return {};
-    Hit hit = reference::describe(ray_, *best_);
-    if (tied_) hit.status |= status_tie;
-    return hit;
-  }
-
- private:
-  const Ray& ray_;
-  std::optional<Candidate> best_;
-  bool tied_ = false;
-};
-
-class Any final : public reference::Sink {
- public:
-  explicit Any(const Ray& ray) : tmax_(ray.tmax) {}
-
-  void add(const Candidate&) override { found_ = true; }
-  double reach() const override { return found_ ? -infinity : tmax_; }
-  std::uint32_t status() const { return found_ ? status_hit : status_miss; }
-
- private:
-  double tmax_;
-  bool found_ = false;
-};
-
-class All final : public reference::Sink {
- public:
-  explicit All(const Ray& ray) : ray_(ray) {}
-
-  void add(const Candidate& candidate) override {
-    const auto earlier = [&](const Candidate& a, const Candidate& b) { return reference::before(ray_, a, b); };
-    found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate, earlier), candidate);
-  }
-  double reach() const override { return ray_.tmax; }
-
-  std::vector<Hit> hits() const {
-    std::vector<Hit> result;
-    for (const Candidate& c : found_) result.push_back(reference::describe(ray_, c));
-    for (std::size_t i = 1; i < found_.size(); ++i)
-      if (reference::compare_t(ray_, found_[i - 1], found_[i]) == 0)
-        result[i - 1].status |= status_tie, result[i].status |= status_tie;
-    return result;
-  }
-
- private:
-  const Ray& ray_;
-  std::vector<Candidate> found_;
-};
 
 class ReferenceTracer final : public Tracer {
  public:
@@ -117,21 +52,21 @@ class ReferenceTracer final : public Tracer {
 
   Hit closest(const Ray& ray) const {
     if (!is_valid(ray)) return {.status = status_invalid};
-    Closest sink(ray);
+    reference::Closest sink(ray);
     walk_.trace(ray, sink);
     return sink.hit();
   }
 
   std::uint32_t any(const Ray& ray) const {
     if (!is_valid(ray)) return status_invalid;
-    Any sink(ray);
+    reference::Any sink(ray);
     walk_.trace(ray, sink);
     return sink.status();
   }
 
   std::vector<Hit> all(const Ray& ray) const {
     if (!is_valid(ray)) return {};
-    All sink(ray);
+    reference::All sink(ray);
     walk_.trace(ray, sink);
     return sink.hits();
   }

@@ -68,7 +68,7 @@ std::unique_ptr<Tracer> make_auto(std::shared_ptr<const Geometry> geometry, cons
 }
 
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
-constexpr std::array bvh_precisions{Precision::robust};
+constexpr std::array bvh_precisions{Precision::robust, Precision::certified};
 constexpr std::array stream_precisions{Precision::fast, Precision::robust};
 constexpr std::array objects_precisions{Precision::half, Precision::fast, Precision::robust};
 constexpr std::array all_precisions{Precision::half, Precision::fast, Precision::robust, Precision::certified};

@@ -41,6 +41,7 @@ struct Scalar<REAL> {
 #define BOOL Mask<REAL>
 #define OUT(T) T&
 #define REAL_MAX (REAL{} + std::numeric_limits<typename Scalar<REAL>::type>::max())
+#define ROUNDINGS(n) (n * std::numeric_limits<typename Scalar<REAL>::type>::epsilon() / 2)
 
 template <class MASK>
 [[gnu::always_inline]] inline MASK both(MASK a, MASK b) {
@@ -82,11 +83,13 @@ KERNEL REAL power(REAL a, REAL b) {
 #include "accel/kernels/quadric.glsl"
 #include "accel/kernels/ray_cone.glsl"
 #include "accel/kernels/triangle.glsl"
+#include "accel/kernels/uncertainty.glsl"
 
 #undef KERNEL
 #undef VEC3
 #undef BOOL
 #undef OUT
 #undef REAL_MAX
+#undef ROUNDINGS
 
 }  // namespace rayengine::kernels

@@ -5,6 +5,7 @@
 #define BOOL bool
 #define OUT(T) out precise T // what leads to it is computed as written: watertight triangles rest on it
 #define REAL_MAX 3.402823466e38
+#define ROUNDINGS(n) (float(n) * 5.9604644775390625e-8)
 
 bool both(bool a, bool b) { return a && b; }
 bool either(bool a, bool b) { return a || b; }

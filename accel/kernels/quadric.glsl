@@ -71,17 +71,23 @@ KERNEL REAL clip_box(REAL r, VEC3 p, VEC3 d, VEC3 lower, VEC3 upper) {
   return clip_z(pick(both(within_x, within_y), r, REAL_MAX), p, d, lower.z, upper.z);
 }
 
-KERNEL REAL clip_disk(REAL r, VEC3 p, VEC3 d) {
+// Above zero outside the unit circle about z.
+KERNEL REAL disk_form(REAL r, VEC3 p, VEC3 d) {
   REAL x = p.x + r * d.x;
   REAL y = p.y + r * d.y;
-  return pick(x * x + y * y <= 1, r, REAL_MAX);
+  return (x * x + y * y) - 1;
+}
+KERNEL REAL clip_disk(REAL r, VEC3 p, VEC3 d) { return pick(disk_form(r, p, d) <= 0, r, REAL_MAX); }
+
+// The form A x^2 + E y^2 + H z^2 + 2 I z + J where the ray passes the plane z = at, at r: above zero outside the cap.
+KERNEL REAL cap_form(REAL A, REAL E, REAL H, REAL I, REAL J, REAL at, REAL r, VEC3 p, VEC3 d) {
+  REAL x = p.x + r * d.x;
+  REAL y = p.y + r * d.y;
+  return (A * x * x + E * y * y) + ((H * at * at + 2 * I * at) + J);
 }
 
-// The cap in the plane z = at of the form A x^2 + E y^2 + H z^2 + 2 I z + J: what of the plane is not outside.
+// The cap in that plane.
 KERNEL REAL cap(REAL A, REAL E, REAL H, REAL I, REAL J, REAL at, VEC3 p, VEC3 d) {
   REAL r = plane_root(at, p, d);
-  REAL x = p.x + r * d.x;
-  REAL y = p.y + r * d.y;
-  REAL form = (A * x * x + E * y * y) + ((H * at * at + 2 * I * at) + J);
-  return pick(form <= 0, r, REAL_MAX);
+  return pick(cap_form(A, E, H, I, J, at, r, p, d) <= 0, r, REAL_MAX);
 }

@@ -18,10 +18,9 @@ KERNEL void ray_shear(VEC3 d, OUT(BOOL) x_last, OUT(BOOL) y_last, OUT(VEC3) shea
   shear = VEC3(k.x / k.z, k.y / k.z, k.z);
 }
 
-// The edge functions of a sheared triangle, its corners' depths, and whether the ray passes inside; not for degenerate and
-// parallel triangles and for NaN.
-KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a, VEC3 b, VEC3 c, OUT(VEC3) w, OUT(VEC3) depth,
-                           OUT(BOOL) hit) {
+// The edge functions of a sheared triangle, and its corners' depths.
+KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a, VEC3 b, VEC3 c, OUT(VEC3) w,
+                           OUT(VEC3) depth) {
   VEC3 pa = permuted(VEC3(a.x - o.x, a.y - o.y, a.z - o.z), x_last, y_last);
   VEC3 pb = permuted(VEC3(b.x - o.x, b.y - o.y, b.z - o.z), x_last, y_last);
   VEC3 pc = permuted(VEC3(c.x - o.x, c.y - o.y, c.z - o.z), x_last, y_last);
@@ -33,9 +32,16 @@ KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a,
   REAL dy = pa.y - shear.y * pa.z;
   w = VEC3(cx * by - cy * bx, dx * cy - dy * cx, bx * dy - by * dx);
   depth = VEC3(pa.z, pb.z, pc.z);
-  BOOL inside = either(both(both(w.x >= 0, w.y >= 0), w.z >= 0), both(both(w.x <= 0, w.y <= 0), w.z <= 0));
-  hit = both(inside, (w.x + w.y) + w.z != 0);
 }
+
+// Whether the edge functions have one sign, when each may be off by `slack`; not for NaN.
+KERNEL BOOL one_sign(VEC3 w, REAL slack) {
+  BOOL positive = both(both(w.x >= -slack, w.y >= -slack), w.z >= -slack);
+  return either(positive, both(both(w.x <= slack, w.y <= slack), w.z <= slack));
+}
+
+// Whether the ray passes inside; not for degenerate and parallel triangles.
+KERNEL BOOL triangle_inside(VEC3 w) { return both(one_sign(w, w.x - w.x), (w.x + w.y) + w.z != 0); }
 
 // t along the ray, and the barycentrics u of b and v of c, where it hits.
 KERNEL void triangle_crossing(VEC3 shear, VEC3 w, VEC3 depth, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v) {
@@ -49,6 +55,7 @@ KERNEL void triangle_crossing(VEC3 shear, VEC3 w, VEC3 depth, OUT(REAL) t, OUT(R
 KERNEL void triangle(VEC3 o, VEC3 d, VEC3 a, VEC3 b, VEC3 c, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v, OUT(BOOL) hit) {
   BOOL x_last; BOOL y_last; VEC3 shear; VEC3 w; VEC3 depth;
   ray_shear(d, x_last, y_last, shear);
-  triangle_edges(o, x_last, y_last, shear, a, b, c, w, depth, hit);
+  triangle_edges(o, x_last, y_last, shear, a, b, c, w, depth);
+  hit = triangle_inside(w);
   triangle_crossing(shear, w, depth, t, u, v);
 }

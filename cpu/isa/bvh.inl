@@ -32,12 +32,13 @@ INLINE kernels::Mask<Reals> lanes_with(unsigned bits) {
   return (all_bits & of_lane) != 0;
 }
 
-INLINE void load_packet(const Ray* rays, std::size_t count, PacketState& p) {
+template <Ask ask>
+INLINE void load_packet(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
   alignas(64) double column[8][group];
   for (std::size_t k = 0; k < group; ++k) {
     const auto* row = reinterpret_cast<const double*>(rays + (k < count ? k : 0));
     for (int i = 0; i < 7; ++i) column[i][k] = row[i];
-    column[7][k] = just_above(row[7]);
+    column[7][k] = ask.certain ? row[7] : just_above(row[7]);
   }
   for (int i = 0; i < parts; ++i) {
     State<Reals>& s = p.part[i];
@@ -46,65 +47,79 @@ INLINE void load_packet(const Ray* rays, std::size_t count, PacketState& p) {
     s.rays.d = {at(4), at(5), at(6)};
     s.rays.tmin = at(3), s.rays.nearest = at(7);
     begin(s);
+    if (ask.certain) begin_certain(job, error, s);
   }
 }
 
+template <Ask ask>
 INLINE State<double> extract(const State<Reals>& s, int i) {
   const auto vec = [i](const Vec3<Reals>& v) { return Vec3<double>{v.x[i], v.y[i], v.z[i]}; };
-  const Sheared<double> sheared{s.sheared.x_last[i] != 0, s.sheared.y_last[i] != 0, vec(s.sheared.shear)};
-  return {{vec(s.rays.o), vec(s.rays.d), s.rays.tmin[i], s.rays.nearest[i], s.rays.object[i], true},
-          sheared,
-          s.index[i],
-          s.part[i],
-          s.u[i],
-          s.v[i]};
+  const Sheared<Reals>& h = s.sheared;
+  State<double> one{{vec(s.rays.o), vec(s.rays.d), s.rays.tmin[i], s.rays.nearest[i], s.rays.object[i], true},
+                    {h.x_last[i] != 0, h.y_last[i] != 0, vec(h.shear), 0, 0, 0},
+                    s.index[i],
+                    s.part[i],
+                    s.u[i],
+                    s.v[i],
+                    {}};
+  if (!ask.certain) return one;
+  one.sheared.edge_error = h.edge_error[i];
+  one.sheared.depth_error = h.depth_error[i];
+  one.sheared.per_length = h.per_length[i];
+  const Certainty<Reals>& c = s.certainty;
+  one.certainty = {c.t[i], c.low[i], c.rival[i], c.o_extra[i], c.d_size[i]};
+  return one;
 }
 
+template <Ask ask>
 INLINE void put_back(const State<double>& from, State<Reals>& s, int i) {
   s.rays.nearest[i] = from.rays.nearest;
   s.rays.object[i] = from.rays.object;
   s.index[i] = from.index, s.part[i] = from.part, s.u[i] = from.u, s.v[i] = from.v;
+  if (!ask.certain) return;
+  const Certainty<double>& c = from.certainty;
+  s.certainty.t[i] = c.t, s.certainty.low[i] = c.low, s.certainty.rival[i] = c.rival;
 }
 
 /// A ray that needs no more: no box reaches it.
 INLINE void end_ray(PacketState& p, int k) { p.local.length[k] = -1; }
 
-template <bool any>
+template <Ask ask>
 INLINE void trace_lane(const BvhJob& job, PacketState& p, int k, std::uint32_t child) {
   State<Reals>& s = p.part[k / reals_count];
-  State<double> alone = extract(s, k % reals_count);
-  if (!trace_alone<any>(job, p.local, k, child, alone)) return;
-  p.hit |= 1u << k;
-  if (any)
+  State<double> alone = extract<ask>(s, k % reals_count);
+  const bool hit = trace_alone<ask>(job, p.local, k, child, alone);
+  if (hit) p.hit |= 1u << k;
+  if (hit && ask.any)
     end_ray(p, k);
-  else
-    put_back(alone, s, k % reals_count);
+  else if (hit || ask.certain)
+    put_back<ask>(alone, s, k % reals_count);
 }
 
-template <bool any>
+template <Ask ask>
 INLINE void trace_lanes(const BvhJob& job, PacketState& p, unsigned rays, std::uint32_t child) {
-  for (; rays; rays &= rays - 1) trace_lane<any>(job, p, __builtin_ctz(rays), child);
+  for (; rays; rays &= rays - 1) trace_lane<ask>(job, p, __builtin_ctz(rays), child);
 }
 
 /// Tests a leaf against the given rays; those that were hit nearer than before.
-template <bool any>
+template <Ask ask>
 INLINE unsigned test_leaf_together(const BvhJob& job, const BvhLeaf& leaf, PacketState& p, unsigned rays) {
   unsigned hit = 0;
   for (int i = 0; i < parts; ++i) {
     const unsigned mine = rays >> (i * reals_count) & part_bits;
     if (!mine) continue;
     p.part[i].rays.active = lanes_with(mine);
-    hit |= test_leaf<any>(job, leaf, p.part[i]) << (i * reals_count);
+    hit |= test_leaf<ask>(job, leaf, p.part[i]) << (i * reals_count);
   }
   p.hit |= hit;
   return hit;
 }
 
-template <bool any>
+template <Ask ask>
 INLINE void shorten_hit(const BvhJob& job, PacketState& p, unsigned hit) {
   for (; hit; hit &= hit - 1) {
     const int k = __builtin_ctz(hit);
-    if (any)
+    if (ask.any)
       end_ray(p, k);
     else
       shorten(job, p.local, k, p.part[k / reals_count].rays.nearest[k % reals_count]);
@@ -147,7 +162,7 @@ INLINE Waiting* push_children(const BvhJob& job, std::uint32_t parent, const Tub
   return top;
 }
 
-template <bool any>
+template <Ask ask>
 INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
   Waiting stack[most_waiting];
   float end = longest(p.local);
@@ -164,10 +179,10 @@ INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
     }
     const unsigned before = p.hit;
     if (leaf)
-      shorten_hit<any>(job, p, test_leaf_together<any>(job, job.leaves[child ^ WideNode::leaf], p, rays));
+      shorten_hit<ask>(job, p, test_leaf_together<ask>(job, job.leaves[child ^ WideNode::leaf], p, rays));
     else
-      trace_lanes<any>(job, p, rays, child);
-    if (any && p.hit == before) continue;
+      trace_lanes<ask>(job, p, rays, child);
+    if (ask.any && p.hit == before) continue;
     end = longest(p.local);
     if (end < 0) return;
     tube.length = ISA::all(end);
@@ -191,53 +206,96 @@ INLINE unsigned keep_alive(LocalRays& local, std::size_t count, unsigned done) {
   return alive;
 }
 
-template <bool any>
-INLINE void trace_group(const BvhJob& job, const Ray* rays, std::size_t count, PacketState& p) {
-  load_packet(rays, count, p);
-  if (job.unbounded) test_leaf_together<any>(job, *job.unbounded, p, (1u << count) - 1);
+template <Ask ask>
+INLINE void trace_group(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
+  p.hit = 0;
+  load_packet<ask>(job, rays, count, error, p);
+  if (job.unbounded) test_leaf_together<ask>(job, *job.unbounded, p, (1u << count) - 1);
   if (!job.nodes) return;
   load_local(job, rays, count, p.local);
-  const unsigned alive = keep_alive(p.local, count, any ? p.hit : 0);
+  const unsigned alive = keep_alive(p.local, count, ask.any ? p.hit : 0);
   Tube tube;
   const bool together = enclose(p.local, tube);  // gives places without a living ray the numbers of one
   for (int k = 0; k < group; ++k)
     if (!(alive >> k & 1)) end_ray(p, k);
-  shorten_hit<any>(job, p, p.hit & alive);
+  shorten_hit<ask>(job, p, p.hit & alive);
   if (together)
-    trace_tube<any>(job, p, tube);
+    trace_tube<ask>(job, p, tube);
   else
-    trace_lanes<any>(job, p, alive, 0);
+    trace_lanes<ask>(job, p, alive, 0);
 }
 
 INLINE std::size_t group_size(std::size_t left) { return left < group ? left : group; }
 
-void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, BvhAnswer* answers) {
+constexpr Ask nearest_hit{false, false}, any_hit{true, false}, certain_nearest{false, true}, certain_any{true, true};
+
+INLINE BvhAnswer answer_of(const State<Reals>& s, std::size_t i) {
+  return {s.rays.nearest[i],
+          0,
+          static_cast<std::uint32_t>(s.index[i]),
+          static_cast<std::uint32_t>(s.part[i]),
+          static_cast<float>(s.u[i]),
+          static_cast<float>(s.v[i])};
+}
+
+INLINE bool is_unsure(const State<Reals>& s, std::size_t i) {
+  const double rival = s.certainty.rival[i];
+  return rival <= s.rays.nearest[i] && rival < std::numeric_limits<double>::infinity();
+}
+
+INLINE BvhAnswer certain_answer_of(const State<Reals>& s, std::size_t i) {
+  BvhAnswer answer = answer_of(s, i);
+  const double t = s.certainty.t[i], before = t - s.certainty.low[i], after = s.rays.nearest[i] - t;
+  answer.t = t;
+  answer.error = (before > after ? before : after) + roundoff_of(t);
+  if (is_unsure(s, i)) answer.part = BvhAnswer::unsure;
+  return answer;
+}
+
+template <Ask ask>
+INLINE void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+                         BvhAnswer* answers) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
-    p.hit = 0;
-    trace_group<false>(job, rays + first, group_size(count - first), p);
+    trace_group<ask>(job, rays + first, group_size(count - first), error, p);
     for (std::size_t k = 0; k < group_size(count - first); ++k) {
       const State<Reals>& s = p.part[k / reals_count];
-      const std::size_t i = k % reals_count;
-      answers[first + k] = {s.rays.nearest[i], static_cast<std::uint32_t>(s.index[i]),
-                            static_cast<std::uint32_t>(s.part[i]), static_cast<float>(s.u[i]),
-                            static_cast<float>(s.v[i])};
+      answers[first + k] = ask.certain ? certain_answer_of(s, k % reals_count) : answer_of(s, k % reals_count);
     }
   }
 }
 
-void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, std::uint32_t* status) {
+template <Ask ask>
+INLINE void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+                     std::uint32_t* status) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
-    p.hit = 0;
-    trace_group<true>(job, rays + first, group_size(count - first), p);
-    for (std::size_t k = 0; k < group_size(count - first); ++k)
-      status[first + k] = p.hit >> k & 1 ? status_hit : status_miss;
+    trace_group<ask>(job, rays + first, group_size(count - first), error, p);
+    for (std::size_t k = 0; k < group_size(count - first); ++k) {
+      const bool hit = p.hit >> k & 1;
+      status[first + k] = hit ? status_hit : status_miss;
+      if (ask.certain && !hit && is_unsure(p.part[k / reals_count], k % reals_count)) status[first + k] = status_unsure;
+    }
   }
+}
+
+void closest(const BvhJob& job, const Ray* rays, std::size_t count, BvhAnswer* answers) {
+  closest_hits<nearest_hit>(job, rays, count, {}, answers);
+}
+void any(const BvhJob& job, const Ray* rays, std::size_t count, std::uint32_t* status) {
+  any_hits<any_hit>(job, rays, count, {}, status);
+}
+void certain_closest(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, BvhAnswer* answers) {
+  closest_hits<certain_nearest>(job, rays, count, error, answers);
+}
+void certainly_any(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+                   std::uint32_t* status) {
+  any_hits<certain_any>(job, rays, count, error, status);
 }
 
 }  // namespace
 
-constinit const BvhQueries bvh_queries{closest_hits, any_hits, all_hits};
+constinit const BvhQueries bvh_queries{closest,          any,   all_hits, certain_closest, certainly_any,
+                                       certain_all_hits, leaves};
 
 }  // namespace rayengine::ISA

@@ -25,48 +25,53 @@ INLINE Vec3<Reals> corners(const TriangleBlock<T>& block, int corner, std::uint3
 
 INLINE kernels::Mask<Reals> mask_of(bool value) { return splat<Reals>(value ? 1 : 0) > 0; }
 
+/// What one ray brings to triangles, in every lane.
+INLINE Sheared<Reals> in_lanes(const Sheared<double>& h) {
+  return {mask_of(h.x_last),
+          mask_of(h.y_last),
+          {splat<Reals>(h.shear.x), splat<Reals>(h.shear.y), splat<Reals>(h.shear.z)},
+          splat<Reals>(h.edge_error),
+          splat<Reals>(h.depth_error),
+          splat<Reals>(h.per_length)};
+}
+
 /// One ray against several triangles at once; then those that it crosses, of which there are few, one by one.
-template <class T, class Take>
+template <Ask ask, class T, class Take>
 INLINE void cross_triangles(const TriangleBlock<T>* blocks, std::uint32_t count, const State<double>& s, Take&& take) {
-  const auto& [o, d, tmin, nearest, object, active] = s.rays;
-  const Sheared<double>& h = s.sheared;
+  const Vec3<double>& o = s.rays.o;
   const Vec3<Reals> from{splat<Reals>(o.x), splat<Reals>(o.y), splat<Reals>(o.z)};
-  const Sheared<Reals> sheared{mask_of(h.x_last),
-                               mask_of(h.y_last),
-                               {splat<Reals>(h.shear.x), splat<Reals>(h.shear.y), splat<Reals>(h.shear.z)}};
+  const Sheared<Reals> sheared = in_lanes(s.sheared);
   for (std::uint32_t i = 0; i < count; i += reals_count) {
     const TriangleBlock<T>& block = blocks[i / TriangleBlock<T>::width];
     const std::uint32_t place = i % TriangleBlock<T>::width;
-    const Crossing<Reals> x = cross(from, sheared, corners(block, 0, place), corners(block, 1, place),
-                                    corners(block, 2, place), splat<Reals>(tmin), mask_of(true));
+    const Crossing<Reals> x = cross<ask>(from, sheared, corners(block, 0, place), corners(block, 1, place),
+                                         corners(block, 2, place), splat<Reals>(s.rays.tmin), mask_of(true));
     for (unsigned hit = lanes_of(x.hit); hit; hit &= hit - 1) {
       const int lane = __builtin_ctz(hit);
-      take(Crossing<double>{x.t[lane], x.u[lane], x.v[lane], true}, block.id[place + static_cast<unsigned>(lane)]);
+      Crossing<double> one{x.t[lane], x.u[lane], x.v[lane], true, true, 0};
+      if (ask.certain) one.certain = x.certain[lane] != 0, one.error = x.error[lane];
+      take(one, block.id[place + static_cast<unsigned>(lane)]);
     }
   }
 }
 
-template <bool any, class T>
+template <Ask ask, class T>
 INLINE bool test_triangles_alone(const BvhJob& job, const TriangleBlock<T>* blocks, std::uint32_t count,
                                  State<double>& s) {
   bool hit = false;
-  cross_triangles(blocks, count, s, [&](const Crossing<double>& x, std::uint32_t id) {
-    const double object = job.geometry->triangle_object.data()[id];
-    if (!comes_first<double>(s, x, object, id)) return;
-    hit = true;
-    if (!any) take<double>(s, x, true, object, id);
-  });
+  cross_triangles<ask>(blocks, count, s,
+                       [&](const Crossing<double>& x, std::uint32_t id) { hit |= take<ask>(job, s, x, id) != 0; });
   return hit;
 }
 
-template <bool any>
+template <Ask ask>
 INLINE bool test_leaf_alone(const BvhJob& job, const BvhLeaf& leaf, State<double>& s) {
   bool hit = false;
-  if (leaf.quadric_count) hit = test_quadrics<any>(job, leaf, s);
+  if (leaf.quadric_count) hit = test_quadrics<ask>(job, leaf, s);
   if (!leaf.triangle_count) return hit;
   if (job.float_blocks)
-    return test_triangles_alone<any>(job, job.float_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
-  return test_triangles_alone<any>(job, job.double_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
+    return test_triangles_alone<ask>(job, job.float_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
+  return test_triangles_alone<ask>(job, job.double_blocks + leaf.first_block, leaf.triangle_count, s) || hit;
 }
 
 /// Brings the end of ray k of a group to a hit at t, rounded up by what placing the ray in the local frame may err.
@@ -109,24 +114,38 @@ INLINE void descend(const BvhJob& job, LocalRays& local, int k, std::uint32_t ch
 }
 
 /// Whether the ray was hit nearer than before.
-template <bool any>
+template <Ask ask>
 bool trace_alone(const BvhJob& job, LocalRays& local, int k, std::uint32_t child, State<double>& s) {
   bool hit = false;
   descend(job, local, k, child, [&](const BvhLeaf& leaf) {
-    if (!test_leaf_alone<any>(job, leaf, s)) return false;
+    if (!test_leaf_alone<ask>(job, leaf, s)) return false;
     hit = true;
-    if (!any) shorten(job, local, k, s.rays.nearest);
-    return any;
+    if (!ask.any) shorten(job, local, k, s.rays.nearest);
+    return ask.any;
   });
   return hit;
 }
 
-template <class T>
+INLINE double roundoff_of(double t) { return std::numeric_limits<double>::epsilon() / 2 * size_of(t); }
+
+/// Reports what may be hit within the interval; as unsure where it need not be.
+INLINE void collect_possible(const State<double>& s, BvhAnswer answer, bool certain, CollectAnswer collect, void* to) {
+  const double low = answer.t - answer.error, high = answer.t + answer.error;
+  if (high <= s.rays.tmin || low > s.rays.nearest) return;
+  answer.error += roundoff_of(answer.t);
+  if (!certain || !(low > s.rays.tmin && high <= s.rays.nearest)) answer.part = BvhAnswer::unsure;
+  collect(to, answer);
+}
+
+template <Ask ask, class T>
 INLINE void collect_triangles(const TriangleBlock<T>* blocks, std::uint32_t count, const State<double>& s,
                               CollectAnswer collect, void* to) {
-  cross_triangles(blocks, count, s, [&](const Crossing<double>& x, std::uint32_t id) {
-    if (x.t < s.rays.nearest)
-      collect(to, {x.t, id, BvhAnswer::triangle, static_cast<float>(x.u), static_cast<float>(x.v)});
+  cross_triangles<ask>(blocks, count, s, [&](const Crossing<double>& x, std::uint32_t id) {
+    const BvhAnswer answer{x.t, x.error, id, BvhAnswer::triangle, static_cast<float>(x.u), static_cast<float>(x.v)};
+    if (ask.certain)
+      collect_possible(s, answer, x.certain, collect, to);
+    else if (x.t < s.rays.nearest)
+      collect(to, answer);
   });
 }
 
@@ -150,15 +169,38 @@ INLINE void collect_quadrics(const BvhJob& job, const BvhLeaf& leaf, const State
     const double t[4] = {c.near, c.far, c.lower_cap, c.upper_cap};
     for (std::uint32_t k = 0; k < 4; ++k)
       if (t[k] > s.rays.tmin && t[k] < s.rays.nearest && t[k] < std::numeric_limits<double>::max())
-        collect(to, {t[k], job.quadrics[i], k < 2 ? 0 : k - 1, 0, 0});
+        collect(to, {t[k], 0, job.quadrics[i], k < 2 ? 0 : k - 1, 0, 0});
   }
 }
 
+template <int kind>
+void certify_all(const BvhJob& job, std::uint32_t i, const State<double>& s, CollectAnswer collect, void* to) {
+  const Quadric& quadric = job.geometry->quadrics.data()[job.quadrics[i]];
+  const auto take = [&](double t, double error, bool possible, bool certain, double part) {
+    if (possible)
+      collect_possible(s, {t, error, job.quadrics[i], static_cast<std::uint32_t>(part), 0, 0}, certain, collect, to);
+  };
+  certain_crossings<kind>(*job.geometry, quadric, job.norms[i], s.rays, s.certainty.o_extra, s.certainty.d_size, take);
+}
+template <int... kind>
+INLINE void certify_all(int which, const BvhJob& job, std::uint32_t i, const State<double>& s, CollectAnswer collect,
+                        void* to, std::integer_sequence<int, kind...>) {
+  ((which == kind ? certify_all<kind>(job, i, s, collect, to) : void()), ...);
+}
+
+template <Ask ask>
 INLINE void collect_leaf(const BvhJob& job, const BvhLeaf& leaf, const State<double>& s, CollectAnswer collect,
                          void* to) {
-  collect_quadrics(job, leaf, s, collect, to);
-  if (job.float_blocks) collect_triangles(job.float_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
-  if (job.double_blocks) collect_triangles(job.double_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
+  if constexpr (ask.certain) {
+    for (std::uint32_t i = leaf.first_quadric; i < leaf.first_quadric + leaf.quadric_count; ++i)
+      certify_all(job.kinds[i], job, i, s, collect, to, std::make_integer_sequence<int, quadric_kind_count>());
+  } else {
+    collect_quadrics(job, leaf, s, collect, to);
+  }
+  if (job.float_blocks)
+    collect_triangles<ask>(job.float_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
+  if (job.double_blocks)
+    collect_triangles<ask>(job.double_blocks + leaf.first_block, leaf.triangle_count, s, collect, to);
 }
 
 INLINE State<double> begin_alone(const Ray& ray) {
@@ -172,15 +214,42 @@ INLINE State<double> begin_alone(const Ray& ray) {
   return s;
 }
 
+/// Calls at_leaf(leaf) for all that the ray may meet, those without a box first, until it answers true.
+template <class AtLeaf>
+INLINE void for_leaves(const BvhJob& job, const Ray& ray, LocalRays& local, AtLeaf&& at_leaf) {
+  if (job.unbounded && at_leaf(*job.unbounded)) return;
+  if (!job.nodes) return;
+  to_local(job, &ray, 1, local, 0);
+  if (local.alive[0]) descend(job, local, 0, 0, at_leaf);
+}
+
 void all_hits(const BvhJob& job, const Ray& ray, CollectAnswer collect, void* to) {
   const State<double> s = begin_alone(ray);
-  if (job.unbounded) collect_leaf(job, *job.unbounded, s, collect, to);
+  LocalRays local;
+  for_leaves(job, ray, local, [&](const BvhLeaf& leaf) {
+    collect_leaf<Ask{false, false}>(job, leaf, s, collect, to);
+    return false;
+  });
+}
+
+void certain_all_hits(const BvhJob& job, const Ray& ray, const RayError& error, CollectAnswer collect, void* to) {
+  State<double> s = begin_alone(ray);
+  s.rays.nearest = ray.tmax;
+  begin_certain(job, error, s);
+  LocalRays local;
+  for_leaves(job, ray, local, [&](const BvhLeaf& leaf) {
+    collect_leaf<Ask{false, true}>(job, leaf, s, collect, to);
+    return false;
+  });
+}
+
+void leaves(const BvhJob& job, const Ray& ray, TakeLeaf take, void* to) {
   if (!job.nodes) return;
   LocalRays local;
   to_local(job, &ray, 1, local, 0);
   if (!local.alive[0]) return;
   descend(job, local, 0, 0, [&](const BvhLeaf& leaf) {
-    collect_leaf(job, leaf, s, collect, to);
+    shorten(job, local, 0, take(to, leaf));
     return false;
   });
 }

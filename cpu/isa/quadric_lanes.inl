@@ -131,10 +131,9 @@ struct Crossings {
 };
 
 /// Whether the line passes a ball, or an infinite cylinder about z, of radius 1: their distance is |o x d| / |d|. What
-/// the products round by is given away, so that no ray is lost that the discriminant would have meet.
-template <bool about_axis, class REAL>
-INLINE kernels::Mask<REAL> passes_by(const Vec3<REAL>& o, const Vec3<REAL>& d) {
-  constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
+/// the products round by is given away in `slack(o^2, d^2)`, so that no ray is lost that is to be tested.
+template <bool about_axis, class REAL, class Slack>
+INLINE kernels::Mask<REAL> passes_by(const Vec3<REAL>& o, const Vec3<REAL>& d, Slack&& slack) {
   const REAL z = o.x * d.y - o.y * d.x;
   REAL cross = z * z, dd = d.x * d.x + d.y * d.y, oo = o.x * o.x + o.y * o.y;
   if constexpr (!about_axis) {
@@ -142,7 +141,7 @@ INLINE kernels::Mask<REAL> passes_by(const Vec3<REAL>& o, const Vec3<REAL>& d) {
     cross = (x * x + y * y) + cross;
     dd = dd + d.z * d.z, oo = oo + o.z * o.z;
   }
-  return cross > dd * ((1 + 16 * unit) + (16 * unit) * oo);
+  return cross > dd + slack(oo, dd);
 }
 
 constexpr bool is_round(int kind) {
@@ -161,9 +160,12 @@ INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, con
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
   // Most rays that meet a quadric's box pass it by: those are spared the divisions and the root.
   if constexpr (is_round(kind))
-    if ((kind == ball_kind || !q.capped) &&
-        none(kernels::both(!passes_by<type == QuadricType::cylinder>(o, d), rays.active)))
-      return {largest, largest, largest, largest};
+    if (kind == ball_kind || !q.capped) {
+      constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
+      const auto slack = [](REAL oo, REAL dd) { return dd * ((16 * unit) + (16 * unit) * oo); };
+      if (none(kernels::both(!passes_by<type == QuadricType::cylinder>(o, d, slack), rays.active)))
+        return {largest, largest, largest, largest};
+    }
   Vec3<REAL> p;
   REAL s, near, far;
   kernels::approach(o, d, p, s);

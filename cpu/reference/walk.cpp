@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cpu/reference/quadric.h"
-#include "cpu/reference/triangle.h"
-
 namespace rayengine::reference {
 namespace {
 
@@ -74,38 +71,15 @@ void Walk::trace_item(const Placed& placed, std::uint32_t item, Sink& sink) cons
   const auto triangles = static_cast<std::uint32_t>(geometry_.triangles.size());
   const auto quadrics = static_cast<std::uint32_t>(geometry_.quadrics.size());
   if (item < triangles)
-    trace_triangle(placed, item, sink);
+    try_triangle(placed, geometry_, item, sink);
   else if (item < triangles + quadrics)
-    trace_quadric(placed, item - triangles, sink);
+    try_quadric(placed, geometry_, item - triangles, sink);
   else if (!placed.instance)
     trace_instance(placed, geometry_.instances[item - triangles - quadrics], sink);
 }
 
-void Walk::trace_triangle(const Placed& placed, std::uint32_t triangle, Sink& sink) const {
-  const auto crossing = cross_triangle(placed.local, geometry_, triangle);
-  if (!crossing) return;
-  const std::uint32_t object = geometry_.triangle_object[triangle];
-  report(placed,
-         {*crossing, object, triangle - geometry_.objects[object].first, &geometry_, placed.instance, triangle, true},
-         sink);
-}
-
-void Walk::trace_quadric(const Placed& placed, std::uint32_t index, Sink& sink) const {
-  const Quadric& quadric = geometry_.quadrics[index];
-  for (const Crossing& crossing : cross_quadric(LocalRay(placed.local, quadric.to_object), geometry_, quadric))
-    report(placed, {crossing, quadric.object, crossing.primitive, &geometry_, placed.instance, index, false}, sink);
-}
-
 void Walk::trace_instance(const Placed& placed, const Instance& instance, Sink& sink) const {
   groups_[instance.group]->trace({placed.ray, LocalRay(placed.local, instance.to_group), &instance}, sink);
-}
-
-void Walk::report(const Placed& placed, Candidate candidate, Sink& sink) const {
-  if (const Instance* instance = placed.instance) {
-    candidate.primitive += geometry_.objects[candidate.object].first_primitive + instance->first_primitive;
-    candidate.object = instance->object;
-  }
-  if (in_interval(placed.ray, candidate)) sink.add(candidate);
 }
 
 }  // namespace rayengine::reference

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cpu/reference/bvh.h"
-#include "cpu/reference/candidates.h"
+#include "cpu/reference/trial.h"
 
 namespace rayengine::reference {
 
@@ -18,19 +18,9 @@ class Walk {
   std::size_t bytes() const;
 
  private:
-  /// A placement of this geometry within the one that rays are traced in.
-  struct Placed {
-    const Ray& ray;
-    const LocalRay& local;
-    const Instance* instance;
-  };
-
   void trace(const Placed& placed, Sink& sink) const;
   void trace_item(const Placed& placed, std::uint32_t item, Sink& sink) const;
-  void trace_triangle(const Placed& placed, std::uint32_t triangle, Sink& sink) const;
-  void trace_quadric(const Placed& placed, std::uint32_t quadric, Sink& sink) const;
   void trace_instance(const Placed& placed, const Instance& instance, Sink& sink) const;
-  void report(const Placed& placed, Candidate candidate, Sink& sink) const;
   Box box_of(std::uint32_t item) const;
 
   const Geometry& geometry_;

@@ -1,0 +1,204 @@
+#include "cpu/bvh_certified.h"
+
+#include "accel/stopwatch.h"
+#include "cpu/bvh_exact.h"
+#include "cpu/bvh_hit.h"
+#include "cpu/moderate.h"
+#include "cpu/ranges.h"
+#include "cpu/reference/sinks.h"
+
+namespace rayengine {
+namespace {
+
+/// What placing a ray in a group's space may be off by: fewer than six roundings a component.
+RayError placing_error(const Ray& ray, const WorldToObject& map) {
+  const double six_roundings = 6 * 0x1p-53 * norm_of(map.linear);
+  return {six_roundings * largest_component(ray.origin - map.origin), six_roundings * largest_component(ray.direction)};
+}
+
+/// The nearest hit so far: its exact t lies between `low` and `high`, and no other's does.
+struct Nearest {
+  BvhFound found{};
+  double low = infinity, high = infinity;
+
+  void set(const BvhFound& to) {
+    found = to;
+    low = to.answer.t - to.answer.error;
+    high = to.answer.t + to.answer.error;
+  }
+};
+
+class CertifiedBvh final : public Tracer {
+ public:
+  explicit CertifiedBvh(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
+      : scene_(geometry), instances_(*geometry), build_seconds_(watch.seconds()) {}
+
+  std::string_view name() const override { return "bvh"; }
+  Precision precision() const override { return Precision::certified; }
+  double build_seconds() const override { return build_seconds_; }
+  std::size_t bytes() const override { return scene_.bytes() + instances_.bytes(); }
+  Limits limits() const override { return {}; }
+
+  void closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) override;
+  void any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) override;
+  HitLists all(std::span<const Ray> rays) override;
+
+ private:
+  bool may_certify(const Ray& ray) const { return scene_.moderate() && is_valid(ray) && is_moderate(ray); }
+
+  Hit nearest(const Ray& ray, const BvhAnswer& answer) const;
+  bool nearest_instance(const Ray& ray, Nearest& nearest) const;
+  std::uint32_t any_instance(const Ray& ray) const;
+  bool collect(const Ray& ray, std::vector<Hit>& hits) const;
+  std::vector<Hit> all(const Ray& ray) const;
+
+  Hit exact_closest(const Ray& ray) const;
+  std::uint32_t exact_any(const Ray& ray) const;
+  std::vector<Hit> exact_all(const Ray& ray) const;
+
+  BvhScene scene_;
+  BvhInstances instances_;
+  double build_seconds_;
+};
+
+Hit CertifiedBvh::exact_closest(const Ray& ray) const {
+  if (!is_valid(ray)) return {.status = status_invalid};
+  reference::Closest sink(ray);
+  trace_exactly(scene_, instances_, ray, sink);
+  Hit hit = sink.hit();
+  hit.status |= status_resolved;
+  return hit;
+}
+
+std::uint32_t CertifiedBvh::exact_any(const Ray& ray) const {
+  if (!is_valid(ray)) return status_invalid;
+  reference::Any sink(ray);
+  trace_exactly(scene_, instances_, ray, sink);
+  return sink.status();
+}
+
+std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
+  if (!is_valid(ray)) return {};
+  reference::All sink(ray);
+  trace_exactly(scene_, instances_, ray, sink);
+  std::vector<Hit> hits = sink.hits();
+  for (Hit& hit : hits) hit.status |= status_resolved;
+  return hits;
+}
+
+/// Whether it could be told.
+bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
+  bool sure = true;
+  instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, Ray local) {
+    local.tmax = std::min(ray.tmax, nearest.high);
+    sure = sure && group.moderate() && is_moderate(local);
+    if (!sure) return -infinity;
+    BvhFound inside{&group.geometry(), &instance};
+    const RayError error = placing_error(ray, instance.to_group);
+    bvh_queries().certain_closest(group.job(), &local, 1, error, &inside.answer);
+    if (inside.answer.part == BvhAnswer::miss) return local.tmax;
+    sure = inside.answer.part != BvhAnswer::unsure && inside.answer.t + inside.answer.error < nearest.low;
+    if (sure) nearest.set(inside);
+    return sure ? nearest.high : -infinity;
+  });
+  return sure;
+}
+
+Hit CertifiedBvh::nearest(const Ray& ray, const BvhAnswer& answer) const {
+  Nearest nearest;
+  const bool hit = answer.part != BvhAnswer::miss;
+  if (hit) nearest.set({&scene_.geometry(), nullptr, answer});
+  if (answer.part == BvhAnswer::unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))
+    return exact_closest(ray);
+  return nearest.found.geometry ? hit_of(ray, nearest.found) : Hit{};
+}
+
+void CertifiedBvh::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass) {
+  check_lengths(rays.size(), hits.size());
+  for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
+    const auto mine = rays.subspan(begin, end - begin);
+    std::vector<BvhAnswer> answers(mine.size());
+    const auto trace = [&](std::size_t first, std::size_t last) {
+      bvh_queries().certain_closest(scene_.job(), &mine[first], last - first, {}, &answers[first]);
+      for (std::size_t i = first; i < last; ++i) hits[begin + i] = nearest(mine[i], answers[i]);
+    };
+    for_runs(
+        mine, [&](const Ray& ray) { return may_certify(ray); }, trace,
+        [&](std::size_t i) { hits[begin + i] = exact_closest(mine[i]); });
+  });
+}
+
+/// status_hit, status_miss, or status_unsure.
+std::uint32_t CertifiedBvh::any_instance(const Ray& ray) const {
+  std::uint32_t result = status_miss;
+  instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, const Ray& local) {
+    if (result == status_hit) return -infinity;
+    std::uint32_t status = status_unsure;
+    if (group.moderate() && is_moderate(local))
+      bvh_queries().certain_any(group.job(), &local, 1, placing_error(ray, instance.to_group), &status);
+    if (status != status_miss) result = status;
+    return result == status_hit ? -infinity : ray.tmax;
+  });
+  return result;
+}
+
+void CertifiedBvh::any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass) {
+  check_lengths(rays.size(), status.size());
+  for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
+    const auto mine = rays.subspan(begin, end - begin);
+    const auto answers = status.subspan(begin, end - begin);
+    const auto trace = [&](std::size_t first, std::size_t last) {
+      bvh_queries().certain_any(scene_.job(), &mine[first], last - first, {}, &answers[first]);
+      for (std::size_t i = first; i < last; ++i) {
+        if (answers[i] == status_miss && !instances_.empty()) answers[i] = any_instance(mine[i]);
+        if (answers[i] == status_unsure) answers[i] = exact_any(mine[i]);
+      }
+    };
+    for_runs(
+        mine, [&](const Ray& ray) { return may_certify(ray); }, trace,
+        [&](std::size_t i) { answers[i] = exact_any(mine[i]); });
+  });
+}
+
+/// All hits in no order; whether they could be told.
+bool CertifiedBvh::collect(const Ray& ray, std::vector<Hit>& hits) const {
+  bool sure = true;
+  const auto add = [&](const BvhScene& scene, const Instance* instance, const Ray& local, const RayError& error) {
+    std::vector<BvhAnswer> answers;
+    const auto collect = [](void* to, const BvhAnswer& a) { static_cast<std::vector<BvhAnswer>*>(to)->push_back(a); };
+    sure = sure && scene.moderate() && is_moderate(local);
+    if (sure) bvh_queries().certain_all(scene.job(), local, error, collect, &answers);
+    for (const BvhAnswer& answer : answers) {
+      sure = sure && answer.part != BvhAnswer::unsure;
+      if (sure) hits.push_back(hit_of(ray, {&scene.geometry(), instance, answer}));
+    }
+    return sure ? ray.tmax : -infinity;
+  };
+  add(scene_, nullptr, ray, {});
+  if (!instances_.empty())
+    instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, const Ray& local) {
+      return add(group, &instance, local, placing_error(ray, instance.to_group));
+    });
+  return sure;
+}
+
+std::vector<Hit> CertifiedBvh::all(const Ray& ray) const {
+  std::vector<Hit> hits;
+  if (!may_certify(ray) || !collect(ray, hits)) return exact_all(ray);
+  sort_hits(hits);
+  const auto overlap = [](const Hit& a, const Hit& b) { return !(a.t + a.error < b.t - b.error); };
+  const bool unsure = std::adjacent_find(hits.begin(), hits.end(), overlap) != hits.end();
+  return unsure ? exact_all(ray) : hits;
+}
+
+HitLists CertifiedBvh::all(std::span<const Ray> rays) {
+  return all_lists(rays.size(), [&](std::size_t i) { return all(rays[i]); });
+}
+
+}  // namespace
+
+std::unique_ptr<Tracer> make_certified_bvh(std::shared_ptr<const Geometry> geometry) {
+  return std::make_unique<CertifiedBvh>(std::move(geometry));
+}
+
+}  // namespace rayengine

@@ -1,0 +1,40 @@
+#include "cpu/bvh_hit.h"
+
+#include <glm/geometric.hpp>
+
+#include "accel/surface.h"
+
+namespace rayengine {
+namespace {
+
+void set_triangle(const BvhFound& found, Hit& hit) {
+  const Geometry& g = *found.geometry;
+  hit.object = g.triangle_object[found.answer.index];
+  hit.primitive = found.answer.index - g.objects[hit.object].first;
+  const glm::dvec3 normal = glm::normalize(triangle_normal(g, found.answer.index));
+  hit.normal = glm::vec3(found.instance ? glm::normalize(found.instance->to_group.normal_to_world(normal)) : normal);
+}
+
+void set_quadric(const Ray& ray, const BvhFound& found, Hit& hit) {
+  const BvhAnswer& a = found.answer;
+  const Quadric& quadric = found.geometry->quadrics[a.index];
+  hit.object = quadric.object, hit.primitive = a.part;
+  hit.normal = glm::vec3(quadric_normal(*found.geometry, quadric, found.instance, a.part, ray.at(a.t)));
+}
+
+}  // namespace
+
+Hit hit_of(const Ray& ray, const BvhFound& found) {
+  const BvhAnswer& a = found.answer;
+  Hit hit{.t = a.t, .error = a.error, .u = a.u, .v = a.v, .status = status_hit};
+  if (a.part == BvhAnswer::triangle)
+    set_triangle(found, hit);
+  else
+    set_quadric(ray, found, hit);
+  if (!found.instance) return hit;
+  hit.primitive += found.instance->first_primitive + found.geometry->objects[hit.object].first_primitive;
+  hit.object = found.instance->object;
+  return hit;
+}
+
+}  // namespace rayengine
