@@ -16,6 +16,9 @@ struct Member {
   std::uint32_t voxel, primitive;
 };
 
+/// What a build may take, in tests of a voxel against a primitive.
+double most_tests(std::size_t primitives) { return 0x1p20 + 64. * static_cast<double>(primitives); }
+
 Box in_frame(const Box& box, const LocalFrame& frame) {
   return {(box.lower - frame.center) * frame.scale - grid_margin,
           (box.upper - frame.center) * frame.scale + grid_margin};
@@ -49,20 +52,40 @@ class Builder {
  private:
   const LocalFrame& frame() const { return grid_.lists.frame; }
 
-  /// Chooses the voxels. Planes are products and sums of what single precision holds, as shaders form them.
+  /// Chooses the voxels: fewer where primitives are so large that most would be in very many of them.
   void lay_out() {
     Box all;
     std::size_t bounded = 0;
     for (const TreeletPrimitive& p : primitives_)
       if (p.bounded()) all.add(in_frame(p.bounds, frame())), ++bounded;
     if (all.empty()) all.add(glm::dvec3(0));
-    grid_.counts = grid_counts(all.size(), bounded, options_);
+    GridOptions options = options_;
+    lay_out(all, grid_counts(all.size(), bounded, options));
+    for (; overlap_tests() > most_tests(bounded) && grid_.counts != glm::uvec3(1); options.density /= 2)
+      lay_out(all, grid_counts(all.size(), bounded, options));
+    grid_.voxels.assign(std::size_t{grid_.counts.x} * grid_.counts.y * grid_.counts.z, no_id);
+  }
+
+  /// Planes are products and sums of what single precision holds, as shaders form them.
+  void lay_out(const Box& all, const glm::uvec3& counts) {
+    grid_.counts = counts;
     for (int i = 0; i < 3; ++i) {
       grid_.lower[i] = float_below(all.lower[i]);
       const double size = all.upper[i] - static_cast<double>(grid_.lower[i]);
-      grid_.cell[i] = float_above(std::max(size, grid_margin) / grid_.counts[i] * (1 + 0x1p-22));
+      grid_.cell[i] = float_above(std::max(size, grid_margin) / counts[i] * (1 + 0x1p-22));
     }
-    grid_.voxels.assign(std::size_t{grid_.counts.x} * grid_.counts.y * grid_.counts.z, no_id);
+  }
+
+  /// Voxels within the bounds of primitives, over all of these.
+  double overlap_tests() const {
+    double tests = 0;
+    for (const TreeletPrimitive& p : primitives_) {
+      if (!p.bounded()) continue;
+      const Box box = in_frame(p.bounds, frame());
+      const glm::dvec3 span(voxel_at(box.upper) - voxel_at(box.lower) + 1u);
+      tests += span.x * span.y * span.z;
+    }
+    return tests;
   }
 
   Voxel voxel(const glm::uvec3& at) const {

@@ -8,6 +8,7 @@
 #include "cpu/reference_tracer.h"
 #include "engine/hybrid/hybrid_tracer.h"
 #include "gpu/cones_tracer.h"
+#include "gpu/grid_tracer.h"
 #include "gpu/hardware.h"
 #include "gpu/objects_tracer.h"
 #include "gpu/stream_tracer.h"
@@ -44,6 +45,12 @@ std::unique_ptr<Tracer> make_cones(std::shared_ptr<const Geometry> geometry, con
   ConesOptions cones;
   cones.device = options.gpu;
   return make_cones_tracer(std::move(geometry), options.precision, cones);
+}
+
+std::unique_ptr<Tracer> make_grid(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  GridTracerOptions grid;
+  grid.device = options.gpu;
+  return make_grid_tracer(std::move(geometry), options.precision, grid);
 }
 
 /// Seconds of work after which a GPU is looked for: many times what the looking costs.
@@ -94,6 +101,9 @@ constexpr std::array registry{
         {"cones", "GPU: Szecsi's hierarchical ray engine, tiles of rays in cones; for small scenes and coherent rays"},
         make_cones,
         stream_precisions},
+    Entry{{"grid", "GPU: Purcell's stream ray tracer, the scene in a uniform grid in textures"},
+          make_grid,
+          stream_precisions},
     Entry{{"hybrid", "CPU and GPU: embree and stream answer the same rays together, each what it is faster at"},
           make_hybrid,
           embree_precisions},

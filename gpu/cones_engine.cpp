@@ -86,14 +86,9 @@ void ConesEngine::cast(std::span<Traveller> travellers) {
 }
 
 void ConesEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
-  const auto set_out = [this](std::uint32_t index, const Ray& ray) {
-    Traveller t;
-    t.ray = index;
-    t.frame = in_frame_from_tmin(scene_.list.frame, ray);
-    return t;
-  };
   trace_in_batches(
-      rays, batch_rays(), set_out, [this](std::span<Traveller> t) { cast(t); }, arrive);
+      rays, batch_rays(), [this](const Ray& ray) { return in_frame_from_tmin(scene_.list.frame, ray); },
+      [this](std::span<Traveller> t) { cast(t); }, arrive);
 }
 
 }  // namespace rayengine

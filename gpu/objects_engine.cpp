@@ -69,13 +69,6 @@ std::vector<ObjectsEngine::Pass> ObjectsEngine::passes() const {
 
 GLsizei ObjectsEngine::batch_side() const { return side; }
 
-Traveller ObjectsEngine::set_out(std::uint32_t index, const Ray& ray) const {
-  Traveller t;
-  t.ray = index;
-  t.frame = in_frame(list_.frame, ray);
-  return t;
-}
-
 void ObjectsEngine::cast(std::span<const Traveller> travellers) {
   glBindVertexArray(vertices_.id());
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -92,12 +85,12 @@ void ObjectsEngine::cast(std::span<const Traveller> travellers) {
 }
 
 void ObjectsEngine::trace(std::span<const Ray> rays, StreamQuery, const Arrive& arrive) {
-  const auto depart = [this](std::uint32_t index, const Ray& ray) { return set_out(index, ray); };
   const auto answer = [this](std::span<Traveller> travellers) {
     cast(travellers);
     batch_->read_back(travellers, context_);
   };
-  trace_in_batches(rays, batch_rays(), depart, answer, arrive);
+  trace_in_batches(
+      rays, batch_rays(), [this](const Ray& ray) { return in_frame(list_.frame, ray); }, answer, arrive);
 }
 
 }  // namespace rayengine

@@ -28,7 +28,6 @@ class ObjectsEngine : public DeviceEngine {
   GLsizei batch_side() const;
   Context& context() { return context_; }
   const LocalFrame& frame() const { return list_.frame; }
-  Traveller set_out(std::uint32_t index, const Ray& ray) const;
   /// Issues all passes for one batch, after which its rays and nearest hits are bound, to be read on the device.
   void cast(std::span<const Traveller> travellers);
 

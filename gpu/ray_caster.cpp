@@ -21,7 +21,8 @@ struct RayCaster::Device {
     for (std::size_t next = 0; next < rays.size();) {
       batch.clear();
       for (; next < rays.size() && batch.size() < engine.batch_rays(); ++next)
-        if (is_valid(rays[next])) batch.push_back(engine.set_out(static_cast<std::uint32_t>(next), rays[next]));
+        if (is_valid(rays[next]))
+          batch.push_back({.ray = static_cast<std::uint32_t>(next), .frame = in_frame(engine.frame(), rays[next])});
       engine.cast(batch);
       seen.resize(batch.size());
       shade.run(seen, engine.context());

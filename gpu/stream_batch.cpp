@@ -13,7 +13,7 @@ std::array<Texture, 4> make_inputs(GLsizei side) {
 
 }  // namespace
 
-StreamBatch::StreamBatch(GLsizei side, GLsizei block)
+StreamBatch::StreamBatch(GLsizei side, GLsizei block, const std::vector<std::size_t>& written)
     : side_(side),
       block_(block),
       upload_(make_mapped_buffer(4 * section(), Mapping::upload)),
@@ -23,6 +23,12 @@ StreamBatch::StreamBatch(GLsizei side, GLsizei block)
       depth_(make_texture(GL_DEPTH_COMPONENT32F, side, side)) {
   glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, hits_.object.id(), 0);
   glNamedFramebufferTexture(frame_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
+  std::vector<GLenum> targets{GL_COLOR_ATTACHMENT0};
+  for (const std::size_t input : written) {
+    targets.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + targets.size()));
+    glNamedFramebufferTexture(frame_.id(), targets.back(), inputs_[input].object.id(), 0);
+  }
+  glNamedFramebufferDrawBuffers(frame_.id(), static_cast<GLsizei>(targets.size()), targets.data());
 }
 
 std::size_t StreamBatch::place(std::size_t i) const {

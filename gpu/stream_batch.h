@@ -5,6 +5,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "gpu/await.h"
 #include "gpu/objects.h"
@@ -23,8 +24,9 @@ inline constexpr float state_start = 0, state_done = 1;
 class StreamBatch {
  public:
   /// `side` x `side` rays, in blocks of `block` x `block`, of which `side` is a multiple. Neighbours among the rays
-  /// have most in common, and devices shade blocks of texels in step.
-  explicit StreamBatch(GLsizei side, GLsizei block = 4);
+  /// have most in common, and devices shade blocks of texels in step. Passes may also write the inputs (by texture
+  /// unit) that `written` names, as their second target and on.
+  explicit StreamBatch(GLsizei side, GLsizei block = 4, const std::vector<std::size_t>& written = {});
 
   std::size_t capacity() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
 

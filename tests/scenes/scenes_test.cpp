@@ -57,7 +57,7 @@ std::vector<RaySet> ray_sets(Scene& scene, Tracer& oracle) {
 }
 
 std::vector<std::string> tracers_for(const Geometry& geometry) {
-  std::vector<std::string> names{"embree", "bvh", "stream"};
+  std::vector<std::string> names{"embree", "bvh", "stream", "grid"};
   if (geometry.objects.size() <= most_objects && geometry.primitive_count <= most_object_tests)
     names.push_back("objects");
   if (geometry.primitive_count <= most_cone_tests) names.push_back("cones");

@@ -4,8 +4,7 @@
 layout(early_fragment_tests) in;
 layout(location = 0) out uvec2 result;
 
-// Reads the ray, and returns the range of primitives to test.
-uvec2 begin() {
+void read_ray() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 o = texelFetch(origins, at, 0);
   vec4 d = texelFetch(directions, at, 0);
@@ -17,10 +16,15 @@ uvec2 begin() {
   floor_rank = texelFetch(entries, at, 0).x;
   best_t = uintBitsToFloat(hit.x);
   best_rank = hit.y;
+}
+
+// Reads the ray, and returns the range of primitives to test.
+uvec2 begin() {
+  read_ray();
 #ifdef OBJECT
   return object_range;
 #else
-  return range_of(texelFetch(lists, at, 0)[round]);
+  return range_of(texelFetch(lists, ivec2(gl_FragCoord.xy), 0)[round]);
 #endif
 }
 

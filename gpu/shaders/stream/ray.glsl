@@ -15,4 +15,5 @@ layout(location = 4) uniform uvec2 object_range;  // first primitive and count, 
 
 const uint none = 0xFFFFFFFFu;
 
-uvec2 range_of(uint treelet) { return texelFetch(ranges, int(treelet) * types + type).xy; }
+uvec2 range_of(uint treelet, int place) { return texelFetch(ranges, int(treelet) * types + place).xy; }
+uvec2 range_of(uint treelet) { return range_of(treelet, type); }

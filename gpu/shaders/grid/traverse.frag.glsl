@@ -1,0 +1,7 @@
+// Moves the rays that are traversing. After traverse.glsl.
+layout(location = 1) out uvec4 place;
+
+void main() {
+  read_ray();
+  place = traverse(texelFetch(lists, ivec2(gl_FragCoord.xy), 0));
+}
