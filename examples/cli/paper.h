@@ -1,0 +1,29 @@
+#pragma once
+
+#include <initializer_list>
+#include <utility>
+
+#include "examples/cli/cli.h"
+
+namespace rayengine::cli {
+
+/// What every experiment of `paper` is told.
+struct PaperOptions {
+  Common common;
+  std::string name;
+  std::vector<std::filesystem::path> scenes;
+  std::filesystem::path output;
+};
+
+// Each repeats one paper's experiment into the folder `output`; the result is the exit code.
+int run_carr(const PaperOptions& options);
+
+/// The scenes that were named, each with its file's name.
+std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& options);
+
+/// Makes the folder, and throws Error when one of these files could not be written there.
+void prepare_folder(const PaperOptions& options, std::initializer_list<const char*> files);
+
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace rayengine::cli
