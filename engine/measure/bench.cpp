@@ -8,7 +8,6 @@
 #include "engine/batched.h"
 #include "engine/measure/contestant.h"
 #include "engine/measure/rays.h"
-#include "engine/measure/recorded.h"
 #include "engine/tracers.h"
 
 namespace rayengine {
@@ -143,12 +142,11 @@ Comparison check(const Contestant& contestant, const RaySet& set, std::size_t ti
   std::vector<Ray> rays;
   std::vector<std::size_t> from;
   for (std::size_t i = 0; i < timed; i += step) rays.push_back(set.rays[i]), from.push_back(i);
-  std::vector<Hit> hits(rays.size());
-  if (set.any) closest(oracle, rays, hits, set.ray_class);
+  std::vector<Hit> hits(rays.size()), exact(rays.size());
+  closest(oracle, rays, exact, set.ray_class);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    hits[i] = set.any ? as_hit(contestant.status(from[i]), hits[i], rays[i]) : contestant.hit(from[i]);
-  Recorded recorded(contestant.name(), contestant.precision(), contestant.limits(), rays, hits);
-  return compare(recorded, oracle, geometry, rays, set.ray_class);
+    hits[i] = set.any ? as_hit(contestant.status(from[i]), exact[i], rays[i]) : contestant.hit(from[i]);
+  return judge({geometry, contestant.limits(), rays, set.ray_class, hits, exact}, &oracle);
 }
 
 BenchRow to_row(Entry& entry, const RaySet& set) {

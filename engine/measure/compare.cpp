@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "engine/measure/bound.h"
@@ -13,14 +14,6 @@ namespace {
 constexpr std::size_t first_count = 16;                 // rays beyond bounds that are named
 constexpr std::size_t block = 1024;                     // doubtful rays that are asked again together
 constexpr double parts_of_bound[]{1, 0.125, 0.015625};  // small things lie within the bound
-
-/// What a tracer cannot have answered: found again where it wrote nothing.
-Hit poison() {
-  Hit hit;
-  hit.t = hit.error = std::numeric_limits<double>::quiet_NaN();
-  hit.status = status_hit;
-  return hit;
-}
 
 bool has_nan(const Hit& h) {
   return std::isnan(h.t + h.error) || std::isnan(h.u + h.v) || std::isnan(h.normal.x + h.normal.y + h.normal.z);
@@ -45,21 +38,41 @@ double bound_of(const Geometry& geometry, const Limits& limits, const Ray& ray, 
   return bound;
 }
 
+/// The angle between two unit vectors; their cosine would not tell small ones.
+double angle(const glm::vec3& a, const glm::vec3& b) {
+  return 2 * std::asin(std::min(0.5 * glm::length(glm::dvec3(a) - glm::dvec3(b)), 1.0));
+}
+
+/// Sorts the errors.
+void summarise(std::vector<double>& errors, double& max, double& p999) {
+  if (errors.empty()) return;
+  std::sort(errors.begin(), errors.end());
+  max = errors.back();
+  p999 = errors[(errors.size() - 1) * 999 / 1000];
+}
+
 class Judge {
  public:
-  Judge(Tracer& oracle, const Geometry& geometry, const Limits& limits, std::span<const Ray> rays, RayClass ray_class)
-      : oracle_(oracle), geometry_(geometry), limits_(limits), rays_(rays), class_(ray_class) {}
+  Judge(const Answers& answers, Tracer* oracle)
+      : oracle_(oracle),
+        geometry_(answers.geometry),
+        limits_(answers.limits),
+        rays_(answers.rays),
+        class_(answers.ray_class) {}
 
   Comparison judge(std::span<const Hit> hits, std::span<const Hit> exact) {
     result_.rays = rays_.size();
     for (std::size_t i = 0; i < rays_.size(); ++i) look(i, hits[i], exact[i]);
-    for (const double part : parts_of_bound) ask_again(part);
+    for (const double part : parts_of_bound)
+      if (oracle_) ask_again(part);
     for (const Doubt& doubt : doubts_) beyond_.push_back(doubt.index);
     std::sort(beyond_.begin(), beyond_.end());
     result_.beyond_bounds = beyond_.size();
     beyond_.resize(std::min(beyond_.size(), first_count));
     result_.first = beyond_;
-    summarise();
+    summarise(t_errors_, result_.max_t_error, result_.p999_t_error);
+    summarise(point_errors_, result_.max_point_error, result_.p999_point_error);
+    summarise(normal_errors_, result_.max_normal_error, result_.p999_normal_error);
     return result_;
   }
 
@@ -91,17 +104,21 @@ class Judge {
   void look_at_t(std::size_t i, const Hit& hit, const Hit& exact) {
     const double difference = std::abs(hit.t - exact.t);
     record(difference, exact.t);
+    point_errors_.push_back(difference * glm::length(rays_[i].direction));
+    normal_errors_.push_back(angle(hit.normal, exact.normal));
     if (hit.error > 0) {
-      if (!(difference <= hit.error + exact.error)) beyond_.push_back(i);
-      return;
+      if (difference <= hit.error + exact.error) return;
+      ++result_.bound_violations;
+      return beyond_.push_back(i);
     }
+    if (!oracle_) return;
     const double bound = bound_of(geometry_, limits_, rays_[i], hit, exact);
     if (!(difference <= in_t(bound, rays_[i], exact) + exact.error))
       doubts_.push_back({i, rays_[i], hit, exact, bound});
   }
 
   void record(double difference, double t) {
-    errors_.push_back(difference == 0 ? 0 : difference / std::abs(t));
+    t_errors_.push_back(difference == 0 ? 0 : difference / std::abs(t));
     const std::size_t bin = ulp_bin(difference / float_ulp(t));
     if (result_.ulps.size() <= bin) result_.ulps.resize(bin + 1);
     ++result_.ulps[bin];
@@ -115,7 +132,7 @@ class Judge {
       const std::vector<Hit> answers = ask_around(some, part);
       const std::size_t count = answers.size() / some.size();
       for (std::size_t k = 0; k < some.size(); ++k)
-        if (explained(some[k], part, std::span(answers).subspan(k * count, count), geometry_, oracle_))
+        if (explained(some[k], part, std::span(answers).subspan(k * count, count), geometry_, *oracle_))
           result_.ambiguous += !same_ids(some[k].hit, some[k].exact);
         else
           kept.push_back(some[k]);
@@ -130,18 +147,11 @@ class Judge {
       rays.insert(rays.end(), some.begin(), some.end());
     }
     std::vector<Hit> answers(rays.size());
-    oracle_.closest(rays, answers, class_);
+    oracle_->closest(rays, answers, class_);
     return answers;
   }
 
-  void summarise() {
-    if (errors_.empty()) return;
-    std::sort(errors_.begin(), errors_.end());
-    result_.max_t_error = errors_.back();
-    result_.p999_t_error = errors_[(errors_.size() - 1) * 999 / 1000];
-  }
-
-  Tracer& oracle_;
+  Tracer* oracle_;  // null: nothing is asked again
   const Geometry& geometry_;
   const Limits limits_;
   std::span<const Ray> rays_;
@@ -149,17 +159,28 @@ class Judge {
   Comparison result_;
   std::vector<Doubt> doubts_;
   std::vector<std::size_t> beyond_;
-  std::vector<double> errors_;  // of t, relative
+  std::vector<double> t_errors_, point_errors_, normal_errors_;
 };
 
 }  // namespace
 
+Hit unanswered() {
+  Hit hit;
+  hit.t = hit.error = std::numeric_limits<double>::quiet_NaN();
+  hit.status = status_hit;
+  return hit;
+}
+
+Comparison judge(const Answers& answers, Tracer* oracle) {
+  return Judge(answers, oracle).judge(answers.hits, answers.exact);
+}
+
 Comparison compare(Tracer& tracer, Tracer& oracle, const Geometry& geometry, std::span<const Ray> rays,
                    RayClass ray_class) {
-  std::vector<Hit> hits(rays.size(), poison()), exact(rays.size(), poison());
+  std::vector<Hit> hits(rays.size(), unanswered()), exact(rays.size(), unanswered());
   tracer.closest(rays, hits, ray_class);
   oracle.closest(rays, exact, ray_class);
-  return Judge(oracle, geometry, tracer.limits(), rays, ray_class).judge(hits, exact);
+  return judge({geometry, tracer.limits(), rays, ray_class, hits, exact}, &oracle);
 }
 
 }  // namespace rayengine

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "engine/measure/contestant.h"
-#include "engine/measure/recorded.h"
 
 namespace rayengine {
 namespace {
@@ -79,18 +78,6 @@ TEST(Contestant, AnswersThatWereNeverWrittenAreNoticed) {
   EXPECT_EQ(contestant->status(8), status_miss);
   EXPECT_THROW(contestant->hit(9), Error);
   EXPECT_THROW(contestant->status(9), Error);
-}
-
-TEST(Recorded, AnswersForPartsOfItsRaysAlone) {
-  const std::vector<Ray> rays(6);
-  std::vector<Hit> hits(6), got(2);
-  for (std::size_t i = 0; i < hits.size(); ++i) hits[i].t = static_cast<double>(i);
-  Recorded recorded("old", Precision::fast, {}, rays, hits);
-  recorded.closest(std::span(rays).subspan(3, 2), got, RayClass::primary);
-  EXPECT_EQ(got[0].t, 3);
-  EXPECT_EQ(got[1].t, 4);
-  const std::vector<Ray> others(2);
-  EXPECT_THROW(recorded.closest(others, got, RayClass::primary), Error);
 }
 
 }  // namespace

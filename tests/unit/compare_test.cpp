@@ -69,6 +69,40 @@ const std::vector<Ray> plain_rays{{{-5, 0, 2}, 0, {0, 0, -1}, infinity},
                                   {{1.25, -3, 2}, 0, {0, 0, -1}, infinity},
                                   {{1.25, 9, 2}, 0, {0, 0, -1}, infinity}};
 
+TEST(Compare, MeasuresPointsAndNormals) {
+  const Comparison c = compare_defective({{{1.25, -3, 2}, 0, {0, 0, -4}, infinity}}, [](std::size_t, Hit& hit) {
+    hit.t += 0.25;
+    hit.normal = glm::vec3(0, 0.6f, 0.8f);
+  });
+  EXPECT_DOUBLE_EQ(c.max_t_error, 0.25 / 0.75);
+  EXPECT_DOUBLE_EQ(c.max_point_error, 1);
+  EXPECT_NEAR(c.max_normal_error, std::acos(0.8), 1e-6);
+  EXPECT_EQ(c.p999_point_error, c.max_point_error);
+  EXPECT_EQ(c.p999_normal_error, c.max_normal_error);
+}
+
+TEST(Compare, CountsBoundsThatAreBroken) {
+  const Comparison c = compare_defective(plain_rays, [](std::size_t i, Hit& hit) {
+    hit.error = i == 0 ? 1e-3 : 1e-9;
+    if (hit.hit()) hit.t += 1e-6;
+  });
+  EXPECT_EQ(c.bound_violations, 2u);
+  EXPECT_EQ(c.beyond_bounds, 2u);
+}
+
+TEST(Compare, WithoutAnOracleNothingIsExcused) {
+  const auto geometry = spheres_and_a_floor();
+  std::vector<Hit> exact(plain_rays.size());
+  make_reference_tracer(geometry)->closest(plain_rays, exact, RayClass::primary);
+  std::vector<Hit> hits = exact;
+  hits[1] = {};
+  for (Hit& hit : hits) hit.error = 0, hit.t += 1e-3;
+  const Comparison c = judge({*geometry, {}, plain_rays, RayClass::primary, hits, exact}, nullptr);
+  EXPECT_EQ(c.false_misses, 1u);
+  EXPECT_EQ(c.ambiguous, 0u);
+  EXPECT_EQ(c.beyond_bounds, 1u) << "a t that states no error breaks none";
+}
+
 TEST(Compare, FindsNothingWhereNothingIs) {
   const Comparison c = compare_defective(plain_rays, [](std::size_t, Hit&) {});
   EXPECT_EQ(c.rays, 4u);
