@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "accel/surface.h"
 #include "cpu/moderate.h"
 #include "cpu/quadric_kind.h"
 
@@ -56,6 +57,8 @@ void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
     for (std::uint32_t i = 0; i < leaf.triangle_count; ++i, ++id) {
       TriangleBlock<T>& block = blocks[leaf.first_block + i / width];
       block.id[i % width] = *id;
+      // One so thin that doubles see no plane in it would be hit at a t that is all rounding.
+      if (triangle_normal(*geometry_, *id) == glm::dvec3(0)) continue;
       for (int corner = 0; corner < 3; ++corner) {
         const glm::dvec3 p = geometry_->vertex(geometry_->triangles[*id][corner]);
         for (int axis = 0; axis < 3; ++axis) block.corners[corner][axis][i % width] = static_cast<T>(p[axis]);
