@@ -31,7 +31,7 @@ struct Nearest {
 class CertifiedBvh final : public Tracer {
  public:
   explicit CertifiedBvh(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
-      : scene_(geometry), instances_(*geometry), build_seconds_(watch.seconds()) {}
+      : scene_(geometry, Planeless::kept), instances_(*geometry, Planeless::kept), build_seconds_(watch.seconds()) {}
 
   std::string_view name() const override { return "bvh"; }
   Precision precision() const override { return Precision::certified; }

@@ -2,8 +2,8 @@
 
 namespace rayengine {
 
-BvhInstances::BvhInstances(const Geometry& geometry) : instances_(geometry.instances) {
-  for (const auto& group : geometry.groups) groups_.push_back(std::make_unique<BvhScene>(group));
+BvhInstances::BvhInstances(const Geometry& geometry, Planeless planeless) : instances_(geometry.instances) {
+  for (const auto& group : geometry.groups) groups_.push_back(std::make_unique<BvhScene>(group, planeless));
   std::vector<TreeletPrimitive> boxes;
   for (const Instance& instance : instances_)
     boxes.push_back({bounds(geometry, instance), 0, static_cast<std::uint32_t>(boxes.size())});

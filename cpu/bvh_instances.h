@@ -10,7 +10,7 @@ namespace rayengine {
 /// The instances of a Geometry: a BVH over their boxes, and the scenes of their groups.
 class BvhInstances {
  public:
-  explicit BvhInstances(const Geometry& geometry);
+  BvhInstances(const Geometry& geometry, Planeless planeless);
 
   /// Calls meet(instance, scene of its group, the ray in its space) for the instances that `ray` may hit, by ascending
   /// distance where they have a box. `meet` answers the t beyond which no more are wanted. t is the same in all spaces.

@@ -49,7 +49,7 @@ BvhLeaf BvhScene::leaf(const Treelet& treelet, std::uint32_t& blocks) const {
 }
 
 template <class T>
-void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
+void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks, Planeless planeless) {
   const BvhLeaf& last = leaves_.back();
   blocks.resize(last.first_block + (last.triangle_count + width - 1) / width, empty_block<T>());
   const std::uint32_t* id = treelets_.triangles.data();
@@ -57,8 +57,7 @@ void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
     for (std::uint32_t i = 0; i < leaf.triangle_count; ++i, ++id) {
       TriangleBlock<T>& block = blocks[leaf.first_block + i / width];
       block.id[i % width] = *id;
-      // One so thin that doubles see no plane in it would be hit at a t that is all rounding.
-      if (triangle_normal(*geometry_, *id) == glm::dvec3(0)) continue;
+      if (planeless == Planeless::left_out && triangle_normal(*geometry_, *id) == glm::dvec3(0)) continue;
       for (int corner = 0; corner < 3; ++corner) {
         const glm::dvec3 p = geometry_->vertex(geometry_->triangles[*id][corner]);
         for (int axis = 0; axis < 3; ++axis) block.corners[corner][axis][i % width] = static_cast<T>(p[axis]);
@@ -67,13 +66,13 @@ void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks) {
   }
 }
 
-BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry) : geometry_(std::move(geometry)) {
+BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless) : geometry_(std::move(geometry)) {
   treelets_ = build_treelets(treelet_primitives(*geometry_), leaf_size(*geometry_), frame_bounds(*geometry_));
   std::uint32_t blocks = 0;
   for (const Treelet& treelet : treelets_.treelets) leaves_.push_back(leaf(treelet, blocks));
   leaves_.push_back(leaf(treelets_.unbounded, blocks));
   const bool exact = geometry_->exact_vertices.empty();
-  exact ? fill(float_blocks_) : fill(double_blocks_);
+  exact ? fill(float_blocks_, planeless) : fill(double_blocks_, planeless);
   for (const std::uint32_t i : treelets_.quadrics) add_quadric(geometry_->quadrics[i]);
   bound_corners();
 

@@ -11,11 +11,15 @@ namespace rayengine {
 /// The queries of the best instruction set that this machine has.
 const BvhQueries& bvh_queries();
 
+/// Triangles so thin that doubles see no plane in them. Double would hit them at a t that is all rounding; who asks
+/// exact arithmetic where double cannot tell keeps them.
+enum class Planeless { left_out, kept };
+
 /// What a Geometry holds itself, not its instances, laid out for the queries of isa/bvh.inl. Immutable once built.
 class BvhScene {
  public:
   /// Throws Error when there is no memory.
-  explicit BvhScene(std::shared_ptr<const Geometry> geometry);
+  BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless);
 
   const Geometry& geometry() const { return *geometry_; }
   const BvhJob& job() const { return job_; }
@@ -32,7 +36,7 @@ class BvhScene {
 
  private:
   template <class T>
-  void fill(std::vector<TriangleBlock<T>>& blocks);
+  void fill(std::vector<TriangleBlock<T>>& blocks, Planeless planeless);
   void add_quadric(const Quadric& quadric);
   void bound_corners();
   BvhLeaf leaf(const Treelet& treelet, std::uint32_t& blocks) const;

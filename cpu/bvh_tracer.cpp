@@ -14,7 +14,9 @@ namespace {
 class BvhTracer final : public Tracer {
  public:
   explicit BvhTracer(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
-      : scene_(geometry), instances_(*geometry), build_seconds_(watch.seconds()) {}
+      : scene_(geometry, Planeless::left_out),
+        instances_(*geometry, Planeless::left_out),
+        build_seconds_(watch.seconds()) {}
 
   std::string_view name() const override { return "bvh"; }
   Precision precision() const override { return Precision::robust; }

@@ -36,12 +36,6 @@ void prepare_folder(const PaperOptions& options, std::initializer_list<const cha
   for (const char* name : files) check_output(options.output / name);
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  AtomicFile out(file);
-  out.write(text);
-  out.commit();
-}
-
 void add_paper(CLI::App& app, Action& action) {
   auto options = std::make_shared<PaperOptions>();
   CLI::App* sub = add_subcommand(

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "examples/cli/cli.h"
+#include "examples/cli/report.h"
 
 namespace rayengine::cli {
 
@@ -23,7 +24,5 @@ std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& optio
 
 /// Makes the folder, and throws Error when one of these files could not be written there.
 void prepare_folder(const PaperOptions& options, std::initializer_list<const char*> files);
-
-void write_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace rayengine::cli

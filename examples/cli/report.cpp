@@ -32,11 +32,13 @@ std::string device_of(const Tracer& tracer) {
 
 }  // namespace
 
-void write_json(const std::filesystem::path& file, const Json& json) {
+void write_text(const std::filesystem::path& file, const std::string& text) {
   AtomicFile out(file);
-  out.write(json.dump(2) + '\n');
+  out.write(text);
   out.commit();
 }
+
+void write_json(const std::filesystem::path& file, const Json& json) { write_text(file, json.dump(2) + '\n'); }
 
 Json device(int threads) {
   return {{"processor", processor()},

@@ -11,7 +11,10 @@ namespace rayengine::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Writes through a temporary, so that nothing partial is left. Numbers that are not finite become null. Throws Error.
+/// Writes through a temporary, so that nothing partial is left. Throws Error.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+/// The same; numbers that are not finite become null.
 void write_json(const std::filesystem::path& file, const Json& json);
 
 /// The machine and the program: what figures depend on besides the scene.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "accel/ray.h"
 #include "engine/load/image_io.h"
@@ -69,7 +70,7 @@ using CliBench = Cli;
 using CliInfo = Cli;
 
 TEST_F(CliUsage, HelpOnEveryLevelHasExamplesAndDefaults) {
-  for (const std::string sub : {"", "render", "trace", "compare", "bench", "info"}) {
+  for (const std::string sub : {"", "render", "trace", "compare", "bench", "stress", "paper", "info"}) {
     const test::Outcome help = run(sub + " --help");
     EXPECT_EQ(help.code, 0) << sub;
     EXPECT_NE(help.out.find("Examples:"), std::string::npos) << sub;
@@ -85,7 +86,7 @@ TEST_F(CliUsage, VersionIsOneLine) {
 }
 
 TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
-  expect_failure(2, "", "render, trace, compare, bench, paper or info");
+  expect_failure(2, "", "render, trace, compare, bench, stress, paper or info");
   expect_failure(2, "frobnicate", "frobnicate");
   expect_failure(2, "render scene.nff --frobnicate", "--frobnicate");
   expect_failure(2, "render scene.nff --tracer nobody", "choose among auto, embree");
@@ -103,6 +104,9 @@ TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
   expect_failure(2, "compare scene.nff --tracers embree,nobody", "nobody");
   expect_failure(2, "bench scene.nff --tracers embree-naked", "embree-naked");
   expect_failure(2, "bench scene.nff --precisions fast,perfect", "perfect");
+  expect_failure(2, "stress --tracers nobody", "nobody");
+  expect_failure(2, "stress --precisions perfect", "perfect");
+  expect_failure(2, "stress --rays 0", "--rays");
 }
 
 TEST_F(CliFailure, WorkThatCannotBeDoneExitsWith1) {
@@ -126,6 +130,7 @@ TEST_F(CliFailure, UnwritableOutputIsFoundBeforeTheWork) {
   expect_failure(1, "compare none.nff --tracers embree,reference --json none/a.json", "none/a.json");
   expect_failure(1, "bench none.nff --json none/a.json", "none/a.json");
   expect_failure(1, "info none.nff --json none/a.json", "none/a.json");
+  expect_failure(1, "stress --html none/a.html", "none/a.html");
 }
 
 TEST_F(CliFailure, PicturesThatNoMemoryHoldsAreRefused) {
@@ -331,6 +336,30 @@ TEST_F(CliBench, RowsHaveTheKeysOfTheContractAndAreChecked) {
       EXPECT_GT(row["max_rel_t_error"], 1e-4);
     }
   }
+}
+
+TEST_F(Cli, StressTellsEveryCaseAsTableJsonAndPage) {
+  const test::Outcome outcome = run("stress --tracers embree --rays 2000 --json s.json --html s.html --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json told = parse("s.json");
+  EXPECT_TRUE(told["good"].get<bool>());
+  EXPECT_GE(told["left_out"].size(), 1u) << "embree has no half";
+  std::set<std::string> cases, precisions;
+  for (const json& row : told["rows"]) {
+    cases.insert(row["case"].get<std::string>()), precisions.insert(row["precision"].get<std::string>());
+    for (const char* key : {"variant", "rays", "false_hits", "false_misses", "wrong_ids", "ambiguous", "nans",
+                            "aborted", "bound_violations", "max_rel_t_error", "p999_rel_t_error", "max_point_error",
+                            "p999_point_error", "max_normal_error", "p999_normal_error", "broken_limit"})
+      EXPECT_TRUE(row.contains(key)) << key;
+  }
+  EXPECT_EQ(cases.size(), 34u);
+  EXPECT_TRUE(precisions.contains("fast") && precisions.contains("robust"));
+  const std::string page = test::content(file("s.html"));
+  for (const std::string& name : cases) {
+    EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+    EXPECT_NE(page.find(name.substr(0, name.find('\''))), std::string::npos) << name;
+  }
+  EXPECT_TRUE(page.ends_with("</html>\n"));
 }
 
 TEST_F(CliInfo, CountsWhatASceneHolds) {
