@@ -11,6 +11,7 @@
 #include "gpu/grid_tracer.h"
 #include "gpu/hardware.h"
 #include "gpu/objects_tracer.h"
+#include "gpu/points_tracer.h"
 #include "gpu/stream_tracer.h"
 
 namespace rayengine {
@@ -51,6 +52,12 @@ std::unique_ptr<Tracer> make_grid(std::shared_ptr<const Geometry> geometry, cons
   GridTracerOptions grid;
   grid.device = options.gpu;
   return make_grid_tracer(std::move(geometry), options.precision, grid);
+}
+
+std::unique_ptr<Tracer> make_points(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  PointsTracerOptions points;
+  points.device = options.gpu;
+  return make_points_tracer(std::move(geometry), options.precision, points);
 }
 
 /// Seconds of work after which a GPU is looked for: many times what the looking costs.
@@ -103,6 +110,9 @@ constexpr std::array registry{
         stream_precisions},
     Entry{{"grid", "GPU: Purcell's stream ray tracer, the scene in a uniform grid in textures"},
           make_grid,
+          stream_precisions},
+    Entry{{"points", "GPU: Ralovich and Magdics' rays as vertices, through a uniform grid in the vertex shader"},
+          make_points,
           stream_precisions},
     Entry{{"hybrid", "CPU and GPU: embree and stream answer the same rays together, each what it is faster at"},
           make_hybrid,

@@ -7,9 +7,10 @@ namespace rayengine {
 namespace {
 
 enum Location : GLint {
-  scene_lower_location = 1,
+  steps_location = 8,
+  scene_lower_location = 16,
   scene_upper_location,
-  triangle_count_location,
+  structure_location,  // the number of triangles, or the first list
   eye_location,
   view_corner_location,
   view_right_location,
@@ -20,13 +21,11 @@ enum Location : GLint {
 /// A render target for each light beside the first, of the eight that OpenGL promises; their numbers take four bits.
 constexpr std::size_t most_lights = 7;
 
-constexpr std::uint32_t all_in_one = 0xFFFFFFFFu;
-
-std::shared_ptr<const Geometry> checked(std::shared_ptr<const Geometry> geometry) {
+std::shared_ptr<const Geometry> checked(std::shared_ptr<const Geometry> geometry, const PointsOptions& options) {
   if (!geometry->quadrics.empty())
     throw Error("the scene has " + std::to_string(geometry->quadrics.size()) +
                 " quadrics, and this caster takes 0: use --tracer embree");
-  if (geometry->triangles.size() > longest_loop)
+  if (options.naive && geometry->triangles.size() > longest_loop)
     throw Error("the scene has " + std::to_string(geometry->triangles.size()) + " triangles, and without a structure " +
                 std::to_string(longest_loop) + " can be tested: use --tracer embree");
   return geometry;
@@ -43,20 +42,14 @@ void set(GLint location, const glm::vec3& v) { glUniform3f(location, v.x, v.y, v
 
 }  // namespace
 
-Sources operator+(Sources a, const Sources& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 CastScene::CastScene(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
                      std::span<const CastMaterial> materials, const glm::vec3& background, const PointsOptions& options)
     : options_(options),
       context_(options.device),
       scene_(flatten(geometry)),
-      list_(build_treelets(treelet_primitives(*checked(scene_.geometry)), all_in_one, frame_bounds(*scene_.geometry))),
-      box_(geometry->bounds, list_.frame),
-      textures_(upload(scene_, list_, context_.info())),
-      shading_(*geometry, list_.frame, checked(lights), materials),
+      gridded_(scene_, build_grid(*checked(scene_.geometry, options)), context_.info()),
+      box_(geometry->bounds, gridded_.frame),
+      shading_(*geometry, gridded_.frame, checked(lights), materials),
       lights_(static_cast<GLsizei>(lights.size())),
       background_(background) {
   require_usable(context_);
@@ -64,23 +57,16 @@ CastScene::CastScene(std::shared_ptr<const Geometry> geometry, std::span<const C
 }
 
 Sources CastScene::ray_sources() const {
-  return {"accel/kernels/prelude.glsl",
-          "accel/kernels/box.glsl",
-          "accel/kernels/triangle.glsl",
-          "accel/kernels/highlight.glsl",
-          "gpu/shaders/stream/consider.glsl",
-          "gpu/shaders/stream/triangle.glsl",
-          "gpu/shaders/points/ray.glsl",
-          options_.fat ? "gpu/shaders/points/fat.glsl" : "gpu/shaders/points/packed.glsl",
-          "gpu/shaders/points/view.glsl"};
+  return (options_.naive ? naive_sources : grid_walk_sources) +
+         Sources{"accel/kernels/highlight.glsl", "gpu/shaders/points/ray.glsl",
+                 options_.fat ? "gpu/shaders/points/fat.glsl" : "gpu/shaders/points/packed.glsl",
+                 "gpu/shaders/points/view.glsl"};
 }
-
-Sources CastScene::tracing_sources() { return {"gpu/shaders/points/naive.glsl", "gpu/shaders/points/trace.glsl"}; }
 
 Sources CastScene::shading_sources() { return {"gpu/shaders/shade.glsl", "gpu/shaders/points/surface.glsl"}; }
 
 std::vector<std::string> CastScene::defines() const {
-  std::vector<std::string> result{"LIGHTS=" + std::to_string(lights_)};
+  std::vector<std::string> result{"LIGHTS=" + std::to_string(lights_), grid_tests(gridded_.textures.types())};
   if (options_.fat) result.push_back("FAT");
   if (shadows()) result.push_back("SHADOWS");
   if (options_.reflections > 0) result.push_back("REFLECTIONS");
@@ -88,17 +74,23 @@ std::vector<std::string> CastScene::defines() const {
 }
 
 void CastScene::bind() const {
-  textures_.bind();
+  gridded_.textures.bind();
   shading_.bind();
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
 }
 
 void CastScene::use(const Program& program, const CastView& view) const {
-  const LocalFrame& frame = list_.frame;
+  const LocalFrame& frame = gridded_.frame;
   program.use();
   set(scene_lower_location, box_.lower);
   set(scene_upper_location, box_.upper);
-  glUniform1i(triangle_count_location, static_cast<GLint>(list_.triangles.size()));
+  if (options_.naive) {
+    glUniform1i(structure_location, static_cast<GLint>(scene_.geometry->triangles.size()));
+  } else {
+    gridded_.textures.set_uniforms();
+    glUniform1i(steps_location, 1 << 30);
+    glUniform1ui(structure_location, gridded_.first_list);
+  }
   set(eye_location, glm::vec3((view.eye - frame.center) * frame.scale));
   set(view_corner_location, glm::vec3(view.corner));
   set(view_right_location, glm::vec3(view.right));

@@ -3,22 +3,16 @@
 #include <epoxy/gl.h>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "accel/treelets.h"
 #include "gpu/context.h"
-#include "gpu/flat_scene.h"
+#include "gpu/find_sources.h"
+#include "gpu/gridded_scene.h"
 #include "gpu/points_caster.h"
 #include "gpu/program.h"
-#include "gpu/scene_textures.h"
 #include "gpu/shading_textures.h"
 
 namespace rayengine {
-
-/// Sources of shaders in gpu/shaders/points, each of which needs those before it.
-using Sources = std::vector<std::string_view>;
-Sources operator+(Sources a, const Sources& b);
 
 /// What every way to cast a picture shares: the scene on the device, what shaders are made of, and the view.
 class CastScene {
@@ -35,10 +29,10 @@ class CastScene {
   GLsizei layers() const { return shadows() ? 1 + options_.reflections : 1; }
   bool sees_background() const { return background_ != glm::vec3(0); }
 
-  /// Rays, as `format` lays them out, and the view.
+  /// Hits, rays as they are laid out, and the view.
   Sources ray_sources() const;
-  /// After those: the intersection with the scene, and what happens at surfaces.
-  static Sources tracing_sources();
+  /// After those: a ray's way through the scene, and what happens at surfaces.
+  static Sources tracing_sources() { return {"gpu/shaders/points/trace.glsl"}; }
   static Sources shading_sources();
   std::vector<std::string> defines() const;
 
@@ -50,9 +44,8 @@ class CastScene {
   PointsOptions options_;
   Context context_;
   FlatScene scene_;
-  Treelets list_;
+  GriddedScene gridded_;
   FloatBox box_;  // of the whole scene
-  SceneTextures textures_;
   ShadingTextures shading_;
   GLsizei lights_;
   glm::vec3 background_;

@@ -3,7 +3,7 @@
 namespace rayengine {
 namespace {
 
-constexpr GLint reflections_location = 9;
+constexpr GLint reflections_location = 24;
 
 /// One pass, in which the fragment shader follows all rays of its pixel.
 class FragmentMethod : public CastMethod {

@@ -12,17 +12,6 @@ constexpr GLint steps_location = 8;
 /// The depth of a state: see gpu/shaders/grid/traverse.glsl.
 float depth_of(std::size_t state) { return static_cast<float>(state) / 4; }
 
-/// The tests of all types that the scene has, in the order of the ranges of its lists.
-std::string test_all(const std::vector<KernelType>& types) {
-  std::string text = "TEST_ALL=";
-  for (std::size_t place = 0; place < types.size(); ++place) {
-    const bool triangles = types[place] == TreeletPrimitive::triangle;
-    text += "TEST_MEMBERS(" + std::to_string(place) + ", " +
-            (triangles ? "triangle_members, 3, " : "quadric_members, 4, ") + test_call(types[place], "i") + ") ";
-  }
-  return text;
-}
-
 Program make_program(std::string_view name, std::string_view main, bool tests, std::vector<std::string> defines) {
   Stage stage{0,
               {"accel/kernels/prelude.glsl", "accel/kernels/box.glsl", "accel/kernels/grid.glsl",
@@ -40,7 +29,7 @@ Program make_program(std::string_view name, std::string_view main, bool tests, s
 std::vector<std::string> defines_of(const std::vector<KernelType>& types, StreamQuery query,
                                     std::vector<std::string> defines) {
   if (query == StreamQuery::any) defines.push_back("ANY_HIT");
-  defines.push_back(test_all(types));
+  defines.push_back(grid_tests(types));
   return defines;
 }
 

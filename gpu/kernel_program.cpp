@@ -34,6 +34,16 @@ std::string test_call(KernelType type, const std::string& index) {
   return "test_unit(" + index + ", " + form_of(quadric) + ", " + traits_of(quadric) + ")";
 }
 
+std::string grid_tests(const std::vector<KernelType>& types) {
+  std::string text = "TEST_ALL=";
+  for (std::size_t place = 0; place < types.size(); ++place) {
+    const bool triangles = types[place] == TreeletPrimitive::triangle;
+    text += "TEST_MEMBERS(" + std::to_string(place) + ", " +
+            (triangles ? "triangle_members, 3, " : "quadric_members, 4, ") + test_call(types[place], "i") + ") ";
+  }
+  return text;
+}
+
 std::string_view kernel_name(KernelType type) {
   return type == TreeletPrimitive::triangle ? "triangle" : to_string(static_cast<QuadricType>(type));
 }

@@ -24,6 +24,7 @@ struct PointsOptions {
     fragment,           ///< the baseline: one pass, all of a pixel's rays in one loop of a fragment shader
   };
   Method method = Method::points;
+  bool naive = false;   ///< every ray against every triangle, instead of through the scene's grid
   bool fat = false;     ///< vertices of 64 bytes, as the paper has them, where 32 will do
   bool shadows = true;  ///< rays to the lights
   int reflections = 0;  ///< how many may follow each other

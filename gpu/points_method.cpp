@@ -11,7 +11,7 @@
 namespace rayengine {
 namespace {
 
-enum Location : GLint { reflects_location = 9, sees_background_location, generation_location };
+enum Location : GLint { reflects_location = 24, sees_background_location, generation_location };
 
 Program make_program(const CastScene& scene) {
   const auto stage = [&](GLenum type, const Sources& sources) {

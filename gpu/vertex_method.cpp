@@ -7,7 +7,7 @@
 namespace rayengine {
 namespace {
 
-enum Location : GLint { sees_background_location = 10, kind_location = 13 };
+enum Location : GLint { sees_background_location = 25, kind_location = 27 };
 enum Kind : GLint { camera = -2, reflected = -1 };
 
 Program make_program(const CastScene& scene) {

@@ -42,14 +42,15 @@ std::string name_of(const testing::TestParamInfo<Equivalence::ParamType>& info) 
   return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
 }
 INSTANTIATE_TEST_SUITE_P(Tracers, Equivalence,
-                         testing::Combine(testing::Values("embree", "bvh", "stream", "objects", "cones", "grid"),
+                         testing::Combine(testing::Values("embree", "bvh", "stream", "objects", "cones", "grid",
+                                                          "points"),
                                           testing::ValuesIn(test::all_cases())),
                          name_of);
 
 /// Those that also compute in single precision.
 class FastEquivalence : public Equivalence {};
 INSTANTIATE_TEST_SUITE_P(Tracers, FastEquivalence,
-                         testing::Combine(testing::Values("embree", "stream", "objects", "cones", "grid"),
+                         testing::Combine(testing::Values("embree", "stream", "objects", "cones", "grid", "points"),
                                           testing::ValuesIn(test::all_cases())),
                          name_of);
 

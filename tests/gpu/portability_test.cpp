@@ -13,6 +13,7 @@
 #include "gpu/gpu_report.h"
 #include "gpu/objects_tracer.h"
 #include "gpu/points_caster.h"
+#include "gpu/points_tracer.h"
 #include "gpu/ray_caster.h"
 #include "gpu/stream_tracer.h"
 #include "tests/temporary.h"
@@ -89,6 +90,7 @@ void compile_everything() {
   make_objects_tracer(geometry, Precision::fast);
   const std::vector<CastMaterial> materials(1);
   RayCaster(geometry, {}, materials);
+  make_points_tracer(geometry, Precision::fast);
   cast_points();
 }
 

@@ -22,7 +22,7 @@ namespace {
 constexpr int side = 48;                          // of the picture, in rays
 constexpr std::size_t most_objects = 1000;        // for the tracer that makes a pass an object
 constexpr std::size_t most_object_tests = 30000;  // primitives that it tests each ray against
-constexpr std::size_t most_cone_tests = 5000;    // primitives that it tests each tile against
+constexpr std::size_t most_cone_tests = 5000;     // primitives that it tests each tile against
 
 struct RaySet {
   const char* name;
@@ -57,7 +57,7 @@ std::vector<RaySet> ray_sets(Scene& scene, Tracer& oracle) {
 }
 
 std::vector<std::string> tracers_for(const Geometry& geometry) {
-  std::vector<std::string> names{"embree", "bvh", "stream", "grid"};
+  std::vector<std::string> names{"embree", "bvh", "stream", "grid", "points"};
   if (geometry.objects.size() <= most_objects && geometry.primitive_count <= most_object_tests)
     names.push_back("objects");
   if (geometry.primitive_count <= most_cone_tests) names.push_back("cones");

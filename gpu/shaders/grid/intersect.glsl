@@ -3,13 +3,15 @@
 layout(binding = 10) uniform usamplerBuffer triangle_members;  // primitives, list by list
 layout(binding = 11) uniform usamplerBuffer quadric_members;
 
+int nearest;  // the first texel of what was hit last, for those who go on to shade it
+
 #define TEST_MEMBERS(type_place, members, texels, TEST)                \
   {                                                                    \
     uvec2 range = range_of(list, type_place);                          \
     uint stop = range.x + range.y;                                     \
     for (uint k = range.x; k < stop && !enough(); ++k) {               \
       int i = texels * int(texelFetch(members, int(k)).x);             \
-      TEST;                                                            \
+      if (TEST) nearest = i;                                           \
     }                                                                  \
   }
 

@@ -7,12 +7,12 @@ layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 64) flat out u
 layout(location = 0) flat out uvec4 shown[SHOWN];
 layout(location = 2, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 48) flat out uvec4 kept[CARRIED];
 #endif
-layout(location = 10) uniform bool sees_background;
-layout(location = 13) uniform int kind;  // -2: the camera's; -1: reflected; else to the light of this number
+layout(location = 25) uniform bool sees_background;
+layout(location = 27) uniform int kind;  // -2: the camera's; -1: reflected; else to the light of this number
 
 Ray follower(Ray ray) {
   if (kind == -2) return eye_ray(ray.pixel);
-  if (ray.index == none) return Ray(ray.pixel, done, ray.role, 0, vec3(0), vec3(0), 0, none);
+  if (ray.index == none) return Ray(ray.pixel, finished, ray.role, 0, vec3(0), vec3(0), 0, none);
 #if defined(SHADOWS) || defined(REFLECTIONS)
   Surface surface = surface_of(ray);
   return kind == -1 ? reflected_ray(ray, surface) : shadow_ray(ray, surface, kind);

@@ -58,7 +58,7 @@ uvec4[SHOWN] shown_of(Ray ray) {
 Ray from_shown(uvec4 r[SHOWN]) {
   Ray ray;
   ray.pixel = uvec2(0);
-  ray.state = done;
+  ray.state = finished;
   ray.origin = uintBitsToFloat(r[0].xyz);
   ray.t = 0;
   ray.index = r[0].w;

@@ -3,15 +3,15 @@
 layout(points) in;
 layout(points, max_vertices = 2 + LIGHTS) out;
 layout(location = 0) flat in uvec4 carried[][CARRIED];
-layout(location = 9) uniform bool reflects;
-layout(location = 10) uniform bool sees_background;
-layout(location = 11) uniform int generation;  // of the rays that see, in this pass
+layout(location = 24) uniform bool reflects;
+layout(location = 25) uniform bool sees_background;
+layout(location = 26) uniform int generation;  // of the rays that see, in this pass
 
 #ifdef FAT
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 64) flat out uvec4 shown[SHOWN];
 
 void show(Ray ray) {
-  ray.state = done;
+  ray.state = finished;
   shown = record(ray);
   EmitVertex();
 }

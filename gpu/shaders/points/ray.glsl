@@ -1,5 +1,4 @@
 // A ray, and what it hit: what stages and vertex buffers hand on. Coordinates are those of the scene's LocalFrame.
-const uint none = 0xFFFFFFFFu;
 const float far_away = 1e37;
 
 // Roles: a ray that sees, or the number of a light, from 1, of which it finds whether it is hidden.
@@ -8,7 +7,7 @@ const uint sees = 0u;
 // States: to be made from the pixel, to be intersected, shown.
 const uint fresh = 0u;
 const uint waiting = 1u;
-const uint done = 2u;
+const uint finished = 2u;
 
 struct Ray {
   uvec2 pixel;

@@ -1,5 +1,5 @@
 // The baseline: all of a pixel's rays in one loop of one fragment shader.
-layout(location = 9) uniform int reflections;
+layout(location = 24) uniform int reflections;
 uniform vec3 background;
 layout(location = 0) out vec4 color;
 

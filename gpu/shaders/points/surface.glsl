@@ -27,13 +27,13 @@ Ray shadow_ray(Ray ray, Surface s, int light) {
   vec3 origin = s.position + clearance * s.normal;
   bool has_place = texelFetch(lights, 2 * light).w != 0;
   vec3 way = towards_light(light, origin) * (has_place ? 1 : 16);  // out of the scene
-  return Ray(ray.pixel, dot(way, s.normal) > 0 ? waiting : done, uint(light) + 1u, 1, origin, way, 1, none);
+  return Ray(ray.pixel, dot(way, s.normal) > 0 ? waiting : finished, uint(light) + 1u, 1, origin, way, 1, none);
 }
 
 // Not waiting when it would bring nothing.
 Ray reflected_ray(Ray ray, Surface s) {
   float weight = ray.weight * s.finish.reflect;
-  return Ray(ray.pixel, weight >= least_weight ? waiting : done, sees, weight, s.position + clearance * s.normal,
+  return Ray(ray.pixel, weight >= least_weight ? waiting : finished, sees, weight, s.position + clearance * s.normal,
              reflect(-s.view, s.normal), far_away, none);
 }
 

@@ -1,6 +1,6 @@
 // Traces a ray: what the vertex shader does for each point, or the fragment shader of the baseline for each pixel.
-layout(location = 1) uniform vec3 scene_lower;
-layout(location = 2) uniform vec3 scene_upper;
+layout(location = 16) uniform vec3 scene_lower;
+layout(location = 17) uniform vec3 scene_upper;
 
 // An early test: most rays that leave an open scene meet nothing.
 bool meets_scene() {
@@ -19,8 +19,9 @@ void trace(inout Ray ray) {
   best_t = far_away;
   best_rank = none;
   if (!meets_scene()) return;
-  int nearest = intersect(ray.role != sees);
-  if (nearest < 0) return;
+  any_will_do = ray.role != sees;
+  find();
+  if (best_rank == none) return;
   ray.t = best_t;
   ray.index = uint(nearest);
 }
