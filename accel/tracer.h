@@ -24,11 +24,12 @@ std::optional<Precision> parse_precision(std::string_view name);
 
 /// What a caller must know to feed a tracer well.
 struct Limits {
-  bool concurrent = true;        ///< queries may come from several threads at once
-  std::size_t batch = 4096;      ///< rays per query that use the device well
-  double triangle_roundoff = 0;  ///< unit round-off of the arithmetic that tests triangles (2^-24, 2^-53, 0 if exact)
-  double quadric_roundoff = 0;   ///< the same for quadrics
-  bool cuts = false;             ///< cuts large queries itself, and does best with all rays at once
+  bool concurrent = true;         ///< queries may come from several threads at once
+  std::size_t batch = 4096;       ///< rays per query that use the device well
+  double triangle_roundoff = 0;   ///< unit round-off of the arithmetic that tests triangles (2^-24, 2^-53, 0 if exact)
+  double quadric_roundoff = 0;    ///< the same for quadrics
+  double clearance_roundoff = 0;  ///< if larger: rays that leave surfaces should clear what that hides, for speed
+  bool cuts = false;              ///< cuts large queries itself, and does best with all rays at once
 };
 
 /// Anything that answers ray queries on one Geometry, fixed when it was made.

@@ -10,12 +10,6 @@
 namespace rayengine {
 namespace {
 
-/// What placing a ray in a group's space may be off by: fewer than six roundings a component.
-RayError placing_error(const Ray& ray, const WorldToObject& map) {
-  const double six_roundings = 6 * 0x1p-53 * norm_of(map.linear);
-  return {six_roundings * largest_component(ray.origin - map.origin), six_roundings * largest_component(ray.direction)};
-}
-
 /// The nearest hit so far: its exact t lies between `low` and `high`, and no other's does.
 struct Nearest {
   BvhFound found{};
@@ -37,7 +31,8 @@ class CertifiedBvh final : public Tracer {
   Precision precision() const override { return Precision::certified; }
   double build_seconds() const override { return build_seconds_; }
   std::size_t bytes() const override { return scene_.bytes() + instances_.bytes(); }
-  Limits limits() const override { return {}; }
+  /// What starts within the bounds of its own surface cannot be told in double.
+  Limits limits() const override { return {.clearance_roundoff = 0x1p-46}; }
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) override;
   void any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) override;
@@ -52,7 +47,7 @@ class CertifiedBvh final : public Tracer {
   bool collect(const Ray& ray, std::vector<Hit>& hits) const;
   std::vector<Hit> all(const Ray& ray) const;
 
-  Hit exact_closest(const Ray& ray) const;
+  Hit exact_closest(const Ray& ray, double end = infinity) const;
   std::uint32_t exact_any(const Ray& ray) const;
   std::vector<Hit> exact_all(const Ray& ray) const;
 
@@ -61,10 +56,10 @@ class CertifiedBvh final : public Tracer {
   double build_seconds_;
 };
 
-Hit CertifiedBvh::exact_closest(const Ray& ray) const {
+Hit CertifiedBvh::exact_closest(const Ray& ray, double end) const {
   if (!is_valid(ray)) return {.status = status_invalid};
   reference::Closest sink(ray);
-  trace_exactly(scene_, instances_, ray, sink);
+  trace_exactly(scene_, instances_, ray, end, sink);
   Hit hit = sink.hit();
   hit.status |= status_resolved;
   return hit;
@@ -73,14 +68,14 @@ Hit CertifiedBvh::exact_closest(const Ray& ray) const {
 std::uint32_t CertifiedBvh::exact_any(const Ray& ray) const {
   if (!is_valid(ray)) return status_invalid;
   reference::Any sink(ray);
-  trace_exactly(scene_, instances_, ray, sink);
+  trace_exactly(scene_, instances_, ray, infinity, sink);
   return sink.status();
 }
 
 std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
   if (!is_valid(ray)) return {};
   reference::All sink(ray);
-  trace_exactly(scene_, instances_, ray, sink);
+  trace_exactly(scene_, instances_, ray, infinity, sink);
   std::vector<Hit> hits = sink.hits();
   for (Hit& hit : hits) hit.status |= status_resolved;
   return hits;
@@ -96,8 +91,8 @@ bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
     BvhFound inside{&group.geometry(), &instance};
     const RayError error = placing_error(ray, instance.to_group);
     bvh_queries().certain_closest(group.job(), &local, 1, error, &inside.answer);
-    if (inside.answer.part == BvhAnswer::miss) return local.tmax;
-    sure = inside.answer.part != BvhAnswer::unsure && inside.answer.t + inside.answer.error < nearest.low;
+    if (inside.answer.part == BvhAnswer::miss && !inside.answer.unsure) return local.tmax;
+    sure = !inside.answer.unsure && inside.answer.t + inside.answer.error < nearest.low;
     if (sure) nearest.set(inside);
     return sure ? nearest.high : -infinity;
   });
@@ -106,10 +101,9 @@ bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
 
 Hit CertifiedBvh::nearest(const Ray& ray, const BvhAnswer& answer) const {
   Nearest nearest;
-  const bool hit = answer.part != BvhAnswer::miss;
-  if (hit) nearest.set({&scene_.geometry(), nullptr, answer});
-  if (answer.part == BvhAnswer::unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))
-    return exact_closest(ray);
+  if (answer.part != BvhAnswer::miss) nearest.set({&scene_.geometry(), nullptr, answer});
+  if (answer.unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))
+    return exact_closest(ray, nearest.high);
   return nearest.found.geometry ? hit_of(ray, nearest.found) : Hit{};
 }
 
@@ -169,7 +163,7 @@ bool CertifiedBvh::collect(const Ray& ray, std::vector<Hit>& hits) const {
     sure = sure && scene.moderate() && is_moderate(local);
     if (sure) bvh_queries().certain_all(scene.job(), local, error, collect, &answers);
     for (const BvhAnswer& answer : answers) {
-      sure = sure && answer.part != BvhAnswer::unsure;
+      sure = sure && !answer.unsure;
       if (sure) hits.push_back(hit_of(ray, {&scene.geometry(), instance, answer}));
     }
     return sure ? ray.tmax : -infinity;

@@ -18,9 +18,9 @@ KERNEL void ray_shear(VEC3 d, OUT(BOOL) x_last, OUT(BOOL) y_last, OUT(VEC3) shea
   shear = VEC3(k.x / k.z, k.y / k.z, k.z);
 }
 
-// The edge functions of a sheared triangle, and its corners' depths.
+// The edge functions of a sheared triangle, its corners' depths, and how far off the ray they are on either axis at most.
 KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a, VEC3 b, VEC3 c, OUT(VEC3) w,
-                           OUT(VEC3) depth) {
+                           OUT(VEC3) depth, OUT(REAL) size) {
   VEC3 pa = permuted(VEC3(a.x - o.x, a.y - o.y, a.z - o.z), x_last, y_last);
   VEC3 pb = permuted(VEC3(b.x - o.x, b.y - o.y, b.z - o.z), x_last, y_last);
   VEC3 pc = permuted(VEC3(c.x - o.x, c.y - o.y, c.z - o.z), x_last, y_last);
@@ -32,6 +32,9 @@ KERNEL void triangle_edges(VEC3 o, BOOL x_last, BOOL y_last, VEC3 shear, VEC3 a,
   REAL dy = pa.y - shear.y * pa.z;
   w = VEC3(cx * by - cy * bx, dx * cy - dy * cx, bx * dy - by * dx);
   depth = VEC3(pa.z, pb.z, pc.z);
+  REAL x = larger(larger(magnitude(bx), magnitude(cx)), magnitude(dx));
+  REAL y = larger(larger(magnitude(by), magnitude(cy)), magnitude(dy));
+  size = larger(x, y);
 }
 
 // Whether the edge functions have one sign, when each may be off by `slack`; not for NaN.
@@ -53,9 +56,9 @@ KERNEL void triangle_crossing(VEC3 shear, VEC3 w, VEC3 depth, OUT(REAL) t, OUT(R
 
 // All of it for one ray and one triangle.
 KERNEL void triangle(VEC3 o, VEC3 d, VEC3 a, VEC3 b, VEC3 c, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v, OUT(BOOL) hit) {
-  BOOL x_last; BOOL y_last; VEC3 shear; VEC3 w; VEC3 depth;
+  BOOL x_last; BOOL y_last; VEC3 shear; VEC3 w; VEC3 depth; REAL size;
   ray_shear(d, x_last, y_last, shear);
-  triangle_edges(o, x_last, y_last, shear, a, b, c, w, depth);
+  triangle_edges(o, x_last, y_last, shear, a, b, c, w, depth, size);
   hit = triangle_inside(w);
   triangle_crossing(shear, w, depth, t, u, v);
 }

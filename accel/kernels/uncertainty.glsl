@@ -61,11 +61,15 @@ KERNEL REAL rim_error(REAL size, REAL error, REAL constant) {
   return 3 * size * error + 2 * error * error + ROUNDINGS(8) * (size * size + magnitude(constant));
 }
 
-// Of the edge functions of a triangle, whose corners are within `reach` of the ray's origin on every axis; the origin may
-// be off by `o_error` and a slope of the direction by `slope_error`.
-KERNEL REAL edge_error(REAL reach, REAL o_error, REAL slope_error) {
-  REAL corner = (ROUNDINGS(14) + slope_error) * reach + 2 * o_error;
-  return reach * (9 * corner + ROUNDINGS(20) * reach);
+// Of a sheared corner of a triangle, whose corners are within `reach` of the ray's origin on every axis; the origin may be
+// off by `o_error` and a slope of the direction by `slope_error`.
+KERNEL REAL corner_error(REAL reach, REAL o_error, REAL slope_error) {
+  return (ROUNDINGS(14) + slope_error) * reach + 2 * o_error;
+}
+
+// Of the edge functions, when sheared corners are off by `corner` and no more than `size` from the ray on either axis.
+KERNEL REAL edge_error(REAL size, REAL corner) {
+  return 5 * size * corner + 3 * corner * corner + ROUNDINGS(4) * size * size;
 }
 
 // Of t, where all edge functions have one sign and are larger than their error `e`: t is a mean of the corners' depths

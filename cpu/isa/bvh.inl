@@ -56,14 +56,15 @@ INLINE State<double> extract(const State<Reals>& s, int i) {
   const auto vec = [i](const Vec3<Reals>& v) { return Vec3<double>{v.x[i], v.y[i], v.z[i]}; };
   const Sheared<Reals>& h = s.sheared;
   State<double> one{{vec(s.rays.o), vec(s.rays.d), s.rays.tmin[i], s.rays.nearest[i], s.rays.object[i], true},
-                    {h.x_last[i] != 0, h.y_last[i] != 0, vec(h.shear), 0, 0, 0},
+                    {h.x_last[i] != 0, h.y_last[i] != 0, vec(h.shear), 0, 0, 0, 0},
                     s.index[i],
                     s.part[i],
                     s.u[i],
                     s.v[i],
                     {}};
   if (!ask.certain) return one;
-  one.sheared.edge_error = h.edge_error[i];
+  one.sheared.corner_error = h.corner_error[i];
+  one.sheared.widest_error = h.widest_error[i];
   one.sheared.depth_error = h.depth_error[i];
   one.sheared.per_length = h.per_length[i];
   const Certainty<Reals>& c = s.certainty;
@@ -248,7 +249,7 @@ INLINE BvhAnswer certain_answer_of(const State<Reals>& s, std::size_t i) {
   const double t = s.certainty.t[i], before = t - s.certainty.low[i], after = s.rays.nearest[i] - t;
   answer.t = t;
   answer.error = (before > after ? before : after) + roundoff_of(t);
-  if (is_unsure(s, i)) answer.part = BvhAnswer::unsure;
+  answer.unsure = is_unsure(s, i);
   return answer;
 }
 

@@ -43,12 +43,12 @@ struct RayError {
 /// Where a ray was hit.
 struct BvhAnswer {
   static constexpr std::uint32_t triangle = 3, miss = 4;
-  static constexpr std::uint32_t unsure = 5;  ///< of queries that certify: double precision cannot tell
 
   double t, error;      ///< |t - exact t| <= error where the query certifies
   std::uint32_t index;  ///< in Geometry::triangles or Geometry::quadrics
   std::uint32_t part;   ///< 0 side, 1 lower cap, 2 upper cap of a quadric; `triangle`; `miss`
   float u, v;
+  bool unsure = false;  ///< of queries that certify: double precision cannot tell
 };
 
 /// Takes what all-hits queries find.

@@ -30,7 +30,8 @@ INLINE Sheared<Reals> in_lanes(const Sheared<double>& h) {
   return {mask_of(h.x_last),
           mask_of(h.y_last),
           {splat<Reals>(h.shear.x), splat<Reals>(h.shear.y), splat<Reals>(h.shear.z)},
-          splat<Reals>(h.edge_error),
+          splat<Reals>(h.corner_error),
+          splat<Reals>(h.widest_error),
           splat<Reals>(h.depth_error),
           splat<Reals>(h.per_length)};
 }
@@ -128,12 +129,12 @@ bool trace_alone(const BvhJob& job, LocalRays& local, int k, std::uint32_t child
 
 INLINE double roundoff_of(double t) { return std::numeric_limits<double>::epsilon() / 2 * size_of(t); }
 
-/// Reports what may be hit within the interval; as unsure where it need not be.
+/// Reports what may be hit within the interval.
 INLINE void collect_possible(const State<double>& s, BvhAnswer answer, bool certain, CollectAnswer collect, void* to) {
   const double low = answer.t - answer.error, high = answer.t + answer.error;
   if (high <= s.rays.tmin || low > s.rays.nearest) return;
   answer.error += roundoff_of(answer.t);
-  if (!certain || !(low > s.rays.tmin && high <= s.rays.nearest)) answer.part = BvhAnswer::unsure;
+  answer.unsure = !certain || !(low > s.rays.tmin && high <= s.rays.nearest);
   collect(to, answer);
 }
 

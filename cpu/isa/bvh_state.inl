@@ -20,7 +20,7 @@ template <class REAL>
 struct Sheared {
   kernels::Mask<REAL> x_last, y_last;
   Vec3<REAL> shear;
-  REAL edge_error, depth_error, per_length;
+  REAL corner_error, widest_error, depth_error, per_length;
 };
 
 /// What queries that certify keep beside the nearest hit, which then ends at Rays::nearest.
@@ -47,7 +47,7 @@ INLINE void begin(State<REAL>& s) {
   s.rays.object = s.index = REAL{};  // the lowest ids: nothing ties with the end of the interval
   s.u = s.v = REAL{};
   s.part = splat<REAL>(BvhAnswer::miss);
-  s.sheared.edge_error = s.sheared.depth_error = s.sheared.per_length = REAL{};
+  s.sheared.corner_error = s.sheared.widest_error = s.sheared.depth_error = s.sheared.per_length = REAL{};
 }
 
 /// How far the corners of triangles are from a ray's origin, on any axis.
@@ -73,7 +73,8 @@ INLINE void begin_certain(const BvhJob& job, const RayError& error, State<REAL>&
   c.d_size = length + splat<REAL>(error.direction / units);
   const REAL far = reach(job, s.rays.o);
   s.sheared.per_length = 1 / length;
-  s.sheared.edge_error = kernels::edge_error(far, o_error, 3 * d_error * s.sheared.per_length) + splat<REAL>(underflow);
+  s.sheared.corner_error = kernels::corner_error(far, o_error, 3 * d_error * s.sheared.per_length);
+  s.sheared.widest_error = kernels::edge_error(3 * far, s.sheared.corner_error) + splat<REAL>(underflow);
   s.sheared.depth_error = kernels::depth_error(far, length, o_error, d_error);
 }
 
@@ -191,9 +192,11 @@ struct Crossing {
 
 /// Completes a crossing that may be one. Where the edge functions do not tell, it lies between the corners' depths.
 template <class REAL>
-INLINE void bound(const Sheared<REAL>& h, const Vec3<REAL>& w, const Vec3<REAL>& depth, Crossing<REAL>& x) {
-  x.certain = kernels::one_sign(w, -h.edge_error);
-  x.error = kernels::crossing_error(w, depth, h.edge_error, h.per_length, h.depth_error);
+INLINE void bound(const Sheared<REAL>& h, const Vec3<REAL>& w, const Vec3<REAL>& depth, REAL size, Crossing<REAL>& x) {
+  const REAL edge_error = kernels::edge_error(size, h.corner_error) + splat<REAL>(underflow);
+  x.hit = kernels::both(x.hit, kernels::one_sign(w, edge_error));
+  x.certain = kernels::one_sign(w, -edge_error);
+  x.error = kernels::crossing_error(w, depth, edge_error, h.per_length, h.depth_error);
   if (lanes_of(kernels::both(x.hit, !x.certain)) == 0) return;
   const REAL sign = kernels::pick(h.shear.z < 0, -h.per_length, h.per_length);
   const REAL least = kernels::smaller(kernels::smaller(depth.x, depth.y), depth.z);
@@ -207,14 +210,16 @@ template <Ask ask, class REAL>
 INLINE Crossing<REAL> cross(const Vec3<REAL>& o, const Sheared<REAL>& sheared, const Vec3<REAL>& a, const Vec3<REAL>& b,
                             const Vec3<REAL>& c, REAL tmin, const kernels::Mask<REAL>& active) {
   Vec3<REAL> w, depth;
+  REAL size;
   Crossing<REAL> x;
-  kernels::triangle_edges(o, sheared.x_last, sheared.y_last, sheared.shear, a, b, c, w, depth);
-  x.hit = ask.certain ? kernels::one_sign(w, sheared.edge_error) : kernels::triangle_inside(w);
+  kernels::triangle_edges(o, sheared.x_last, sheared.y_last, sheared.shear, a, b, c, w, depth, size);
+  // At first by the bound for all triangles, which costs nothing: few are left for their own.
+  x.hit = ask.certain ? kernels::one_sign(w, sheared.widest_error) : kernels::triangle_inside(w);
   x.hit = kernels::both(x.hit, active);
   if (!lanes_of(x.hit)) return x;
   kernels::triangle_crossing(sheared.shear, w, depth, x.t, x.u, x.v);
   if constexpr (ask.certain) {
-    bound(sheared, w, depth, x);
+    bound(sheared, w, depth, size, x);
     return x;
   }
   const REAL largest = splat<REAL>(std::numeric_limits<double>::max());

@@ -35,8 +35,9 @@ struct Departure {
   void set(const Surface& s, const Limits& limits) {
     position = s.position;
     normal = s.normal;
-    const double seen =
-        s.is_triangle ? triangle_clearance(s, limits.triangle_roundoff) : quadric_clearance(s, limits.quadric_roundoff);
+    const double u =
+        std::max(limits.clearance_roundoff, s.is_triangle ? limits.triangle_roundoff : limits.quadric_roundoff);
+    const double seen = s.is_triangle ? triangle_clearance(s, u) : quadric_clearance(s, u);
     // The surface's own error counts for where the point is and for where the tracer's arithmetic sees the surface; and
     // a ray that rises from a hollow takes up to twice as long to clear it as from a plane.
     clearance = 4 * s.error + seen;
