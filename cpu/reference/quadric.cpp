@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cpu/reference/root.h"
+
 namespace rayengine::reference {
 namespace {
 
@@ -52,12 +54,56 @@ Box box_of(const Geometry& geometry, const Quadric& quadric) {
   return {glm::dvec3(-infinity), glm::dvec3(infinity)};
 }
 
-bool within(double lower, quad x, double upper) { return lower <= x && x <= upper; }
+/// What the whole surface is cut to.
+Box clip_of(const Geometry& geometry, const Quadric& quadric) {
+  Box box = box_of(geometry, quadric);
+  box.lower.z = std::max(box.lower.z, quadric.zmin);
+  box.upper.z = std::min(box.upper.z, quadric.zmax);
+  return box;
+}
 
-bool kept(const Geometry& geometry, const Quadric& quadric, const Vector<quad>& p) {
-  const Box box = box_of(geometry, quadric);
-  return within(box.lower.x, p.x, box.upper.x) && within(box.lower.y, p.y, box.upper.y) &&
-         within(std::max(box.lower.z, quadric.zmin), p.z, std::min(box.upper.z, quadric.zmax));
+/// a, b and c of a t^2 + 2 b t + c along a line.
+template <class T>
+std::array<T, 3> coefficients(const QuadricMatrix& q, const Line<T>& line) {
+  const Point<T> o = origin_of(line), d = direction_of(line);
+  return {product(q, d, d), product(q, o, d), product(q, o, o)};
+}
+
+template <class T>
+const T& component(const Vector<T>& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+int sign(quad x) { return x < 0 ? -1 : x > 0; }
+
+/// The sign of one coordinate of a root's point less `limit`, which is finite.
+int exact_side(const LocalRay& ray, const QuadricMatrix& q, bool plus, int axis, double limit) {
+  const Line<Exact> line = ray.exact();
+  const Exact height = Exact(limit) - component(line.origin, axis);
+  const Exact& slope = component(line.direction, axis);
+  if (slope.sign() == 0) return -height.sign();
+  const auto [a, b, c] = coefficients(q, line);
+  return compare(Root{a, b, c, plus}, height, slope) * slope.sign();
+}
+
+int side(const LocalRay& ray, const QuadricMatrix& q, const Crossing& crossing, bool plus, int axis, double limit) {
+  if (std::isinf(limit)) return limit > 0 ? -1 : 1;
+  const quad along = component(ray.value.direction, axis);
+  const quad difference = component(ray.value.origin, axis) + crossing.t * along - limit;
+  const long double error =
+      crossing.error * size_of(along) +
+      quad_rounding * (component(ray.size.origin, axis).value +
+                       size_of(crossing.t) * component(ray.size.direction, axis).value + std::abs(limit));
+  return size_of(difference) > error ? sign(difference) : exact_side(ray, q, plus, axis, limit);
+}
+
+/// Whether a root's point lies in the box or on it.
+bool within(const LocalRay& ray, const QuadricMatrix& q, const Box& box, const Crossing& crossing, bool plus) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (side(ray, q, crossing, plus, axis, box.lower[axis]) < 0 ||
+        side(ray, q, crossing, plus, axis, box.upper[axis]) > 0)
+      return false;
+  return true;
 }
 
 Crossing quotient(const Estimate& n, const Estimate& d, std::uint32_t primitive) {
@@ -68,19 +114,20 @@ Crossing quotient(const Estimate& n, const Estimate& d, std::uint32_t primitive)
 void cross_side(const LocalRay& ray, const Geometry& geometry, const Quadric& quadric, Crossings& crossings) {
   const QuadricMatrix& q = matrix_of(geometry, quadric);
   const auto [a, b, c, discriminant] = estimate<4>(ray, [&]<class T>(const Line<T>& line) {
-    const Point<T> o = origin_of(line), d = direction_of(line);
-    const T a = product(q, d, d), b = product(q, o, d), c = product(q, o, o);
+    const auto [a, b, c] = coefficients(q, line);
     return std::array<T, 4>{a, b, c, b * b - a * c};
   });
   if (discriminant.value <= 0) return;
   const quad root = sqrtq(discriminant.value);
   const long double root_error = discriminant.error / size_of(root) + quad_rounding * size_of(root);
-  const Estimate r{b.value < 0 ? root - b.value : -(root + b.value), root_error + b.error};
-  const auto add = [&](const Crossing& crossing) {
-    if (kept(geometry, quadric, at(ray, crossing.t))) crossings.add(crossing);
+  const bool plus = b.value < 0;  // which of the two roots does not cancel
+  const Estimate r{plus ? root - b.value : -(root + b.value), root_error + b.error};
+  const Box clip = clip_of(geometry, quadric);
+  const auto add = [&](const Crossing& crossing, bool plus) {
+    if (within(ray, q, clip, crossing, plus)) crossings.add(crossing);
   };
-  if (a.value != 0) add(quotient(r, a, 0));
-  add(quotient(c, r, 0));
+  if (a.value != 0) add(quotient(r, a, 0), plus);
+  add(quotient(c, r, 0), !plus);
 }
 
 /// The part of the plane at `z` where `inside`, if there is one, is not positive.
@@ -103,7 +150,7 @@ void cross_cap(const LocalRay& ray, double z, const QuadricMatrix& q, std::uint3
 
 void cross_flat(const LocalRay& ray, const Quadric& quadric, Crossings& crossings) {
   static const QuadricMatrix unit_circle = unit_matrix(QuadricType::cylinder);
-  if (within(quadric.zmin, 0, quadric.zmax))
+  if (quadric.zmin <= 0 && 0 <= quadric.zmax)
     cross_plane(ray, 0, quadric.type == QuadricType::disk ? &unit_circle : nullptr, 0, crossings);
 }
 

@@ -20,7 +20,7 @@ class Crossings {
 };
 
 /// All crossings of the clipped surface and its caps, in no order. `ray` is in the quadric's object space. The side is
-/// where a t^2 + 2 b t + c = 0 with b^2 > a c, whose sign is exact; clipping is closed.
+/// where a t^2 + 2 b t + c = 0 with b^2 > a c, whose sign is exact; clipping is closed, and as exact.
 Crossings cross_quadric(const LocalRay& ray, const Geometry& geometry, const Quadric& quadric);
 
 /// The outward normal in object space at a crossing; of any length but zero.
