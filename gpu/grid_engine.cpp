@@ -13,8 +13,6 @@ GLsizei batch_side(const GridTracerOptions& options, const GpuInfo& gpu) {
   return std::min(wanted, gpu.texture_size) / 4 * 4;
 }
 
-constexpr GLsizei block = 4;  // rays on a side
-
 /// As gpu/shaders/grid/traverse.glsl numbers them.
 enum State : std::uint32_t { traversing = 0, intersecting = 1, done = 4 };
 
@@ -27,7 +25,8 @@ GridEngine::GridEngine(std::shared_ptr<const Geometry> geometry, const GridTrace
   if (grid.lists.unbounded.size() > 0) first_list_ = unbounded_treelet(grid.lists);
   textures_.emplace(scene_, grid, context_.info());
   require_usable(context_);
-  batch_.emplace(batch_side(options_, context_.info()), block, std::vector{GridKernels::places_input});
+  batch_.emplace(batch_side(options_, context_.info()));
+  batch_->add_target(batch_->input(GridKernels::places_input));
   kernels(StreamQuery::closest);
   context_.check_errors("the upload of the scene");
 }
@@ -59,7 +58,7 @@ void GridEngine::answer(std::span<Traveller> travellers, StreamQuery query) {
   if (options_.single_pass)
     kernels(query).run_single(*batch_, *textures_, options_.policy);
   else
-    kernels(query).run(*batch_, *textures_, options_.policy, false);
+    kernels(query).run(*batch_, *textures_, options_.policy);
   batch_->read_back();
   batch_->await(context_);
   for (std::size_t i = 0; i < travellers.size(); ++i) {

@@ -1,7 +1,6 @@
 #include "gpu/grid_kernels.h"
 
-#include <chrono>
-
+#include "accel/stopwatch.h"
 #include "gpu/kernel_program.h"
 
 namespace rayengine {
@@ -12,40 +11,53 @@ constexpr GLint steps_location = 8;
 /// The depth of a state: see gpu/shaders/grid/traverse.glsl.
 float depth_of(std::size_t state) { return static_cast<float>(state) / 4; }
 
-Program make_program(std::string_view name, std::string_view main, bool tests, std::vector<std::string> defines) {
-  Stage stage{0,
-              {"accel/kernels/prelude.glsl", "accel/kernels/box.glsl", "accel/kernels/grid.glsl",
-               "accel/kernels/triangle.glsl", "accel/kernels/quadric.glsl", "gpu/shaders/stream/ray.glsl",
-               "gpu/shaders/stream/consider.glsl", "gpu/shaders/stream/nearest.glsl", "gpu/shaders/grid/traverse.glsl"},
-              std::move(defines)};
-  if (tests)
-    for (const std::string_view source :
-         {"gpu/shaders/stream/triangle.glsl", "gpu/shaders/stream/quadric.glsl", "gpu/shaders/grid/intersect.glsl"})
-      stage.sources.push_back(source);
-  stage.sources.push_back(main);
-  return make_screen_program(name, std::move(stage));
+/// Writes only the targets whose bits are set.
+void write_targets(unsigned bits) {
+  for (GLuint target = 0; target <= GridKernels::weights_target; ++target) {
+    const GLboolean on = bits >> target & 1 ? GL_TRUE : GL_FALSE;
+    glColorMaski(target, on, on, on, on);
+  }
 }
-
-std::vector<std::string> defines_of(const std::vector<KernelType>& types, StreamQuery query,
-                                    std::vector<std::string> defines) {
-  if (query == StreamQuery::any) defines.push_back("ANY_HIT");
-  defines.push_back(grid_tests(types));
-  return defines;
-}
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+constexpr unsigned bit(GridKernels::Target target) { return 1u << target; }
+constexpr unsigned all_targets = ~0u;
 
 }  // namespace
 
-GridKernels::GridKernels(const std::vector<KernelType>& types, StreamQuery query,
-                         const std::vector<std::string>& defines)
-    : defines_(defines_of(types, query, defines)),
-      traverse_(make_program("traverse", "gpu/shaders/grid/traverse.frag.glsl", false, defines_)),
-      intersect_(make_program("intersect", "gpu/shaders/grid/intersect.frag.glsl", true, defines_)),
+GridKernels::GridKernels(const std::vector<KernelType>& types, StreamQuery query, std::vector<std::string> defines,
+                         Shading shading)
+    : shading_(std::move(shading)),
+      defines_([&] {
+        if (query == StreamQuery::any) defines.push_back("ANY_HIT");
+        if (shaded()) defines.push_back("SHADED");
+        defines.push_back(grid_tests(types));
+        defines.push_back(grid_normals(types));
+        return defines;
+      }()),
+      traverse_(make_program("traverse", "gpu/shaders/grid/traverse.frag.glsl", false)),
+      intersect_(make_program("intersect", "gpu/shaders/grid/intersect.frag.glsl", true)),
       states_(
           make_screen_program("states", {0, {"gpu/shaders/stream/ray.glsl", "gpu/shaders/grid/states.frag.glsl"}, {}})),
       count_(make_screen_program("count", {0, {"gpu/shaders/grid/count.frag.glsl"}, {}})) {
+  if (shaded()) shade_.emplace(make_program("shade", "gpu/shaders/grid/shade.frag.glsl", true));
   for (Query& counter : counters_) counter = make_query(GL_SAMPLES_PASSED);
+}
+
+Program GridKernels::make_program(std::string_view name, std::string_view main, bool tests) const {
+  Stage stage{
+      0,
+      {"accel/kernels/prelude.glsl", "accel/kernels/box.glsl", "accel/kernels/grid.glsl", "accel/kernels/triangle.glsl",
+       "accel/kernels/quadric.glsl", "gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/consider.glsl",
+       "gpu/shaders/stream/nearest.glsl", "gpu/shaders/grid/traverse.glsl", "gpu/shaders/grid/place.glsl"},
+      defines_};
+  if (tests) {
+    for (const std::string_view source :
+         {"gpu/shaders/stream/triangle.glsl", "gpu/shaders/stream/quadric.glsl", "gpu/shaders/grid/intersect.glsl"})
+      stage.sources.push_back(source);
+    stage.sources.insert(stage.sources.end(), shading_.sources.begin(), shading_.sources.end());
+    if (shaded()) stage.sources.push_back("gpu/shaders/grid/shade.glsl");
+  }
+  stage.sources.push_back(main);
+  return make_screen_program(name, std::move(stage));
 }
 
 void GridKernels::begin(const StreamBatch& batch, const GridTextures& grid) const {
@@ -72,18 +84,21 @@ void GridKernels::use(const Program& program, const GridTextures& grid, const Gr
 
 /// One pass over the rays in a state. Each reads and writes its own texels once, which the barrier makes defined.
 void GridKernels::draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const {
-  use(state == GridState::traverse ? traverse_ : intersect_, grid, policy);
+  constexpr std::array written{bit(places_target), bit(places_target) | bit(hits_target), all_targets};
+  const std::array programs{&traverse_, &intersect_, shade_ ? &*shade_ : nullptr};
+  const auto i = static_cast<std::size_t>(state);
+  use(*programs[i], grid, policy);
+  if (state == GridState::shade) shading_.set_uniforms();
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  if (state == GridState::traverse) glColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);  // hits stay as they are
-  draw_everywhere(depth_of(static_cast<std::size_t>(state)));
+  write_targets(written[i]);
+  draw_everywhere(depth_of(i));
   glTextureBarrier();
 }
 
 /// Makes what kernels left in the texels the rays' depths, and counts those in each state.
 GridCounts GridKernels::update_states() const {
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  write_targets(0);
   states_.use();
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
@@ -92,7 +107,7 @@ GridCounts GridKernels::update_states() const {
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
   GridCounts counts{};
-  constexpr std::size_t states = 2;
+  const std::size_t states = shaded() ? 3 : 2;
   for (std::size_t i = 0; i < states; ++i) {
     glBeginQuery(GL_SAMPLES_PASSED, counters_[i].id());
     draw_everywhere(depth_of(i));
@@ -106,30 +121,33 @@ GridCounts GridKernels::update_states() const {
   return counts;
 }
 
-void GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed) {
+GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed) {
   begin(batch, grid);
+  GridWork work;
   GridCounts waiting = update_states();
   while (const auto state = next_kernel(policy, waiting)) {
     const auto i = static_cast<std::size_t>(*state);
     if (timed) glFinish();
-    const double start = now();
+    const Stopwatch watch;
     draw(*state, grid, policy);
-    ++work_.passes[i];
-    work_.rays[i] += waiting[i];
+    ++work.passes[i];
+    work.rays[i] += waiting[i];
     waiting = update_states();
     if (timed) glFinish();
-    work_.seconds[i] += now() - start;
+    work.seconds[i] += watch.seconds();
   }
   end();
+  return work;
 }
 
 void GridKernels::run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy) {
-  if (!single_) single_.emplace(make_program("grid", "gpu/shaders/grid/single.frag.glsl", true, defines_));
+  if (!single_) single_.emplace(make_program("grid", "gpu/shaders/grid/single.frag.glsl", true));
   begin(batch, grid);
   use(*single_, grid, policy);
+  if (shaded()) shading_.set_uniforms();
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_FALSE);
-  glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);  // places stay as they are
+  write_targets(bit(hits_target) | bit(gathered_target));
   draw_everywhere();
   glTextureBarrier();
   end();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,35 +23,52 @@ struct GridWork {
 
 /// The passes that take a batch through the grid. Each ray's state is a depth; a kernel draws under an EQUAL depth
 /// test, so that only rays in its state are shaded; then states are brought up to date, and occlusion queries count the
-/// rays in each, from which a policy chooses the next kernel. Rays are in a StreamBatch whose lists are written.
+/// rays in each, from which a policy chooses the next kernel.
 class GridKernels {
  public:
-  /// Texture of a StreamBatch's inputs that passes write: where rays are.
+  /// What passes write, as their targets in this order; the batch's frame must have those that it needs: the first two,
+  /// and all where rays are shaded.
+  enum Target : GLuint {
+    hits_target,
+    places_target,
+    origins_target,
+    directions_target,
+    gathered_target,
+    weights_target
+  };
+  /// The input of a StreamBatch that says where rays are.
   static constexpr std::size_t places_input = 2;
 
-  GridKernels(const std::vector<KernelType>& types, StreamQuery query, const std::vector<std::string>& defines);
+  /// What else shaded rays need.
+  struct Shading {
+    std::vector<std::string_view> sources;  ///< before gpu/shaders/grid/shade.glsl
+    std::function<void()> set_uniforms;     ///< of a program in use
+  };
+
+  GridKernels(const std::vector<KernelType>& types, StreamQuery query, std::vector<std::string> defines,
+              Shading shading = {});
 
   /// Runs passes until no ray waits. `timed` waits for the device after each.
-  void run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed);
+  GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false);
   /// The same in one pass, with a loop over all of a ray's way.
   void run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy);
 
-  const GridWork& work() const { return work_; }
-
  private:
+  bool shaded() const { return !shading_.sources.empty(); }
+  Program make_program(std::string_view name, std::string_view main, bool tests) const;
   void begin(const StreamBatch& batch, const GridTextures& grid) const;
   void end() const;
   void use(const Program& program, const GridTextures& grid, const GridPolicy& policy) const;
   void draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const;
   GridCounts update_states() const;
 
+  Shading shading_;
   std::vector<std::string> defines_;
-  std::vector<KernelType> types_;
-  Program traverse_, intersect_, states_, count_;
-  std::optional<Program> single_;
+  Program traverse_, intersect_;
+  std::optional<Program> shade_, single_;
+  Program states_, count_;
   std::array<Query, grid_state_count> counters_;
   VertexArray vertices_ = make_vertex_array();
-  GridWork work_;
 };
 
 }  // namespace rayengine

@@ -34,6 +34,15 @@ std::string test_call(KernelType type, const std::string& index) {
   return "test_unit(" + index + ", " + form_of(quadric) + ", " + traits_of(quadric) + ")";
 }
 
+std::string normal_call(KernelType type, const std::string& index, const std::string& position,
+                        const std::string& rank) {
+  if (type == TreeletPrimitive::triangle) return "triangle_normal(" + index + ")";
+  const auto quadric = static_cast<QuadricType>(type);
+  const std::string arguments = index + ", " + position + ", " + rank;
+  if (quadric == QuadricType::general) return "general_normal(" + arguments + ")";
+  return "unit_normal(" + arguments + ", " + form_of(quadric) + ")";
+}
+
 std::string grid_tests(const std::vector<KernelType>& types) {
   std::string text = "TEST_ALL=";
   for (std::size_t place = 0; place < types.size(); ++place) {
@@ -41,6 +50,13 @@ std::string grid_tests(const std::vector<KernelType>& types) {
     text += "TEST_MEMBERS(" + std::to_string(place) + ", " +
             (triangles ? "triangle_members, 3, " : "quadric_members, 4, ") + test_call(types[place], "i") + ") ";
   }
+  return text;
+}
+
+std::string grid_normals(const std::vector<KernelType>& types) {
+  std::string text = "NORMAL_ALL=";
+  for (std::size_t place = 0; place < types.size(); ++place)
+    text += "NORMAL_OF(" + std::to_string(place) + ", " + normal_call(types[place], "i", "position", "rank") + ") ";
   return text;
 }
 
@@ -57,9 +73,8 @@ Stage kernel_stage(KernelType type, const std::vector<std::string_view>& ray_sou
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.glsl" : "gpu/shaders/stream/quadric.glsl");
   stage.sources.push_back(triangle ? "gpu/shaders/stream/triangle.frag.glsl" : "gpu/shaders/stream/quadric.frag.glsl");
   if (triangle) return stage;
-  const auto quadric = static_cast<QuadricType>(type);
   stage.defines.push_back("TEST(i)=" + test_call(type, "i"));
-  stage.defines.push_back(quadric == QuadricType::general ? "GENERAL" : "FORM=" + form_of(quadric));
+  stage.defines.push_back("NORMAL(i, position, rank)=" + normal_call(type, "i", "position", "rank"));
   return stage;
 }
 

@@ -15,9 +15,14 @@ enum KernelLocation : GLint { round_location = 1, type_location = 2, types_locat
 
 /// The call, as GLSL, that tests the primitive of this type whose texels begin at `index`.
 std::string test_call(KernelType type, const std::string& index);
+/// The call that gives its normal, of unit length, at `position`, on the part that has `rank`.
+std::string normal_call(KernelType type, const std::string& index, const std::string& position,
+                        const std::string& rank);
 /// What gpu/shaders/grid/intersect.glsl wants defined: the tests of all types that the scene has, in the order of the
 /// ranges of its lists.
 std::string grid_tests(const std::vector<KernelType>& types);
+/// The same of their normals, for gpu/shaders/grid/shade.glsl.
+std::string grid_normals(const std::vector<KernelType>& types);
 
 /// The name of a type, for messages.
 std::string_view kernel_name(KernelType type);

@@ -8,7 +8,7 @@
 namespace rayengine {
 
 struct PointsTracerOptions {
-  int device = -1;  ///< an EGL device by its number; the best when negative
+  int device = -1;        ///< an EGL device by its number; the best when negative
   std::size_t batch = 0;  ///< rays that are sent at once, at most; 0 for what suits the device
 };
 

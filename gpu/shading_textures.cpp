@@ -10,7 +10,7 @@
 namespace rayengine {
 namespace {
 
-enum Unit : GLuint { owners_unit = 1, materials_unit = 2, lights_unit = 3 };
+enum Unit : GLuint { owners_unit = 12, materials_unit = 13, lights_unit = 14 };
 
 template <class T>
 BufferTexture texture_of(GLenum format, const std::vector<T>& content) {

@@ -13,7 +13,7 @@ std::array<Texture, 4> make_inputs(GLsizei side) {
 
 }  // namespace
 
-StreamBatch::StreamBatch(GLsizei side, GLsizei block, const std::vector<std::size_t>& written)
+StreamBatch::StreamBatch(GLsizei side, GLsizei block)
     : side_(side),
       block_(block),
       upload_(make_mapped_buffer(4 * section(), Mapping::upload)),
@@ -23,12 +23,12 @@ StreamBatch::StreamBatch(GLsizei side, GLsizei block, const std::vector<std::siz
       depth_(make_texture(GL_DEPTH_COMPONENT32F, side, side)) {
   glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, hits_.object.id(), 0);
   glNamedFramebufferTexture(frame_.id(), GL_DEPTH_ATTACHMENT, depth_.object.id(), 0);
-  std::vector<GLenum> targets{GL_COLOR_ATTACHMENT0};
-  for (const std::size_t input : written) {
-    targets.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + targets.size()));
-    glNamedFramebufferTexture(frame_.id(), targets.back(), inputs_[input].object.id(), 0);
-  }
-  glNamedFramebufferDrawBuffers(frame_.id(), static_cast<GLsizei>(targets.size()), targets.data());
+}
+
+void StreamBatch::add_target(const Texture& texture) {
+  targets_.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + targets_.size()));
+  glNamedFramebufferTexture(frame_.id(), targets_.back(), texture.object.id(), 0);
+  glNamedFramebufferDrawBuffers(frame_.id(), static_cast<GLsizei>(targets_.size()), targets_.data());
 }
 
 std::size_t StreamBatch::place(std::size_t i) const {
@@ -54,6 +54,15 @@ void StreamBatch::upload(std::size_t count) {
                         integer ? GL_UNSIGNED_INT : GL_FLOAT, reinterpret_cast<const void*>(i * section()));
   }
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  clear();
+}
+
+void StreamBatch::start(GLsizei rows) {
+  rows_ = rows;
+  clear();
+}
+
+void StreamBatch::clear() {
   bind();
   const GLuint no_hit[4] = {0x7F7FFFFFu, no_id, 0, 0};  // the largest number
   glClearNamedFramebufferuiv(frame_.id(), GL_COLOR, 0, no_hit);

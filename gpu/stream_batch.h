@@ -24,9 +24,13 @@ inline constexpr float state_start = 0, state_done = 1;
 class StreamBatch {
  public:
   /// `side` x `side` rays, in blocks of `block` x `block`, of which `side` is a multiple. Neighbours among the rays
-  /// have most in common, and devices shade blocks of texels in step. Passes may also write the inputs (by texture
-  /// unit) that `written` names, as their second target and on.
-  explicit StreamBatch(GLsizei side, GLsizei block = 4, const std::vector<std::size_t>& written = {});
+  /// have most in common, and devices shade blocks of texels in step.
+  explicit StreamBatch(GLsizei side, GLsizei block = 4);
+
+  /// What shaders read, by texture unit.
+  const Texture& input(std::size_t unit) const { return inputs_[unit]; }
+  /// Has passes write a texture, as the target after those that they have; hits are the first.
+  void add_target(const Texture& texture);
 
   std::size_t capacity() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
 
@@ -49,6 +53,8 @@ class StreamBatch {
   /// Fills the textures from the first `count` rays, and clears hits and states. Lists must be filled up to the end of
   /// rays_in_blocks(count).
   void upload(std::size_t count);
+  /// The same without filling them, for passes that make rays: `rows` of texels.
+  void start(GLsizei rows);
   std::size_t rays_in_blocks(std::size_t count) const;
   /// Binds the textures and the target, and limits drawing to the rows in use.
   void bind() const;
@@ -63,6 +69,7 @@ class StreamBatch {
   void await(Context& context) const { rayengine::await(*fence_, context); }
 
  private:
+  void clear();
   std::size_t section() const { return capacity() * sizeof(glm::vec4); }
 
   GLsizei side_, block_, rows_ = 0;
@@ -71,6 +78,7 @@ class StreamBatch {
   std::array<Texture, 4> inputs_;
   Texture hits_, depth_;
   Framebuffer frame_ = make_framebuffer();
+  std::vector<GLenum> targets_{GL_COLOR_ATTACHMENT0};
   std::optional<Fence> fence_;
 };
 

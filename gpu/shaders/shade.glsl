@@ -1,7 +1,10 @@
 // What surfaces do with light, without shadows. After highlight.glsl. Positions are those of the scene's LocalFrame.
-layout(binding = 1) uniform usamplerBuffer owners;    // of a primitive, by rank: its material
-layout(binding = 2) uniform samplerBuffer materials;  // two texels each: colour and ambient; diffuse, specular, shininess, reflect
-layout(binding = 3) uniform samplerBuffer lights;     // two texels each: position, or direction to it where w is 0; colour
+layout(binding = 12) uniform usamplerBuffer owners;   // of a primitive, by rank: its material
+layout(binding = 13) uniform samplerBuffer materials;  // two texels each: colour and ambient; diffuse, specular, shininess, reflect
+layout(binding = 14) uniform samplerBuffer lights;     // two texels each: position, or direction to it where w is 0; colour
+
+// How far rays start off the surface, in the frame, where the scene is 2 wide: the error of a hit in single precision.
+const float clearance = 1.0 / (1 << 17);
 
 struct Finish {
   vec3 color;

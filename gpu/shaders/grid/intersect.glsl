@@ -3,7 +3,12 @@
 layout(binding = 10) uniform usamplerBuffer triangle_members;  // primitives, list by list
 layout(binding = 11) uniform usamplerBuffer quadric_members;
 
+#ifdef SHADED
+#define KEEP(type_place, i) best_primitive = uint(type_place) << 28 | uint(i)
+#else
 int nearest;  // the first texel of what was hit last, for those who go on to shade it
+#define KEEP(type_place, i) nearest = i
+#endif
 
 #define TEST_MEMBERS(type_place, members, texels, TEST)                \
   {                                                                    \
@@ -11,7 +16,7 @@ int nearest;  // the first texel of what was hit last, for those who go on to sh
     uint stop = range.x + range.y;                                     \
     for (uint k = range.x; k < stop && !enough(); ++k) {               \
       int i = texels * int(texelFetch(members, int(k)).x);             \
-      if (TEST) nearest = i;                                           \
+      if (TEST) { KEEP(type_place, i); }                               \
     }                                                                  \
   }
 
@@ -19,5 +24,5 @@ int nearest;  // the first texel of what was hit last, for those who go on to sh
 uvec4 intersect(uvec4 place) {
   uint list = place.x;
   TEST_ALL
-  return uvec4(none, place.y, enough() ? arrived : traversing, 0);
+  return uvec4(none, place.y, enough() ? arrived : traversing, best_primitive);
 }

@@ -3,5 +3,5 @@ layout(location = 1) out uvec4 place;
 
 void main() {
   read_ray();
-  place = traverse(texelFetch(lists, ivec2(gl_FragCoord.xy), 0));
+  place = traverse(read_place());
 }

@@ -6,9 +6,6 @@ struct Surface {
   Finish finish;
 };
 
-// How far rays start off the surface, in the frame, where the scene is 2 wide: the error of a hit in single precision.
-const float clearance = 1.0 / (1 << 17);
-
 // Reflections that bring less are not traced.
 const float least_weight = 1.0 / 2048;
 

@@ -13,7 +13,11 @@ void read_ray() {
   direction = d.xyz;
   tmin = o.w;
   tmax = d.w;
+#ifdef SHADED
+  floor_rank = none;
+#else
   floor_rank = texelFetch(entries, at, 0).x;
+#endif
   best_t = uintBitsToFloat(hit.x);
   best_rank = hit.y;
 }
@@ -29,12 +33,14 @@ uvec2 begin() {
 }
 
 // For any-hit queries one is enough.
-bool enough() {
-#ifdef ANY_HIT
-  return best_rank != none;
+#if defined(ANY_HIT)
+const bool any_will_do = true;
+#elif defined(SHADED)
+bool any_will_do = false;  // of a ray to a light
 #else
-  return false;
+const bool any_will_do = false;
 #endif
-}
+
+bool enough() { return any_will_do && best_rank != none; }
 
 void end() { result = uvec2(floatBitsToUint(best_t), best_rank); }

@@ -48,6 +48,40 @@ void to_quadric(int i, OUT(vec3) p, OUT(vec3) d, OUT(float) s) {
   approach(o, d, p, s);
 }
 
+// The normal of unit length at a point of the frame, of the part of a quadric that has this rank; `gradient` is the form's, in
+// object space.
+vec3 normal_of_part(int i, vec3 gradient, uint rank) {
+  uint part = rank - texelFetch(quadrics, i + 3).z;
+  vec3 n = part == 0u ? gradient : vec3(0, 0, part == 1u ? -1 : 1);
+  return normalize(uintBitsToFloat(texelFetch(quadrics, i).xyz) * n.x + uintBitsToFloat(texelFetch(quadrics, i + 1).xyz) * n.y +
+                   uintBitsToFloat(texelFetch(quadrics, i + 2).xyz) * n.z);
+}
+
+vec3 point_in_object(int i, vec3 position) {
+  vec3 p;
+  vec3 d;
+  to_object(uintBitsToFloat(texelFetch(quadrics, i)), uintBitsToFloat(texelFetch(quadrics, i + 1)),
+            uintBitsToFloat(texelFetch(quadrics, i + 2)), position, direction, p, d);
+  return p;
+}
+
+vec3 unit_normal(int i, vec3 position, uint rank, float A, float E, float H, float I, float J) {
+  vec3 p = point_in_object(i, position);
+  return normal_of_part(i, vec3(A * p.x, E * p.y, H * p.z + I), rank);
+}
+
+vec3 general_normal(int i, vec3 position, uint rank) {
+  vec3 p = point_in_object(i, position);
+  int form = 4 * int(texelFetch(quadrics, i + 3).w);
+  vec4 f0 = uintBitsToFloat(texelFetch(forms, form));
+  vec4 f1 = uintBitsToFloat(texelFetch(forms, form + 1));
+  vec4 f2 = uintBitsToFloat(texelFetch(forms, form + 2));
+  return normal_of_part(i,
+                        vec3(f0.x * p.x + f0.y * p.y + f0.z * p.z + f0.w, f0.y * p.x + f1.x * p.y + f1.y * p.z + f1.z,
+                             f0.z * p.x + f1.y * p.y + f1.w * p.z + f2.x),
+                        rank);
+}
+
 // Tests the quadric whose texels begin at i, of a type that has a unit primitive of these coefficients, and says whether a
 // hit was kept. What is said of the type is known to the compiler.
 bool test_unit(int i, float A, float E, float H, float I, float J, int clip, bool may_have_caps, bool is_cone) {
