@@ -1,5 +1,7 @@
 #include "cpu/bvh_certified.h"
 
+#include <cmath>
+
 #include "accel/stopwatch.h"
 #include "cpu/bvh_exact.h"
 #include "cpu/bvh_hit.h"
@@ -56,12 +58,29 @@ class CertifiedBvh final : public Tracer {
   double build_seconds_;
 };
 
+/// Whether that is what was found for sure, but for its place among others.
+bool is(const BvhFound& found, const reference::Candidate& exact) {
+  const BvhAnswer& a = found.answer;
+  const std::uint32_t part = exact.is_triangle ? BvhAnswer::triangle : exact.at.primitive;
+  return !a.unsure && found.instance == exact.instance && a.index == exact.index && a.part == part &&
+         std::abs(a.t - static_cast<double>(exact.at.t)) <= a.error;
+}
+
+/// Of a hit that is sure in itself t is as if no other had come near: so answers do not depend on what was looked at.
 Hit CertifiedBvh::exact_closest(const Ray& ray, double end) const {
   if (!is_valid(ray)) return {.status = status_invalid};
   reference::Closest sink(ray);
-  trace_exactly(scene_, instances_, ray, end, sink);
+  const std::vector<BvhFound> possible = trace_exactly(scene_, instances_, ray, end, sink);
   Hit hit = sink.hit();
-  hit.status |= status_resolved;
+  if (!hit.hit()) return hit;
+  const std::uint32_t tie = hit.status & status_tie;
+  const auto found =
+      std::find_if(possible.begin(), possible.end(), [&](const BvhFound& f) { return is(f, *sink.best()); });
+  if (found != possible.end())
+    hit = hit_of(ray, *found);
+  else
+    hit.status |= status_resolved;
+  hit.status |= tie;
   return hit;
 }
 
@@ -163,7 +182,7 @@ bool CertifiedBvh::collect(const Ray& ray, std::vector<Hit>& hits) const {
     sure = sure && scene.moderate() && is_moderate(local);
     if (sure) bvh_queries().certain_all(scene.job(), local, error, collect, &answers);
     for (const BvhAnswer& answer : answers) {
-      sure = sure && !answer.unsure;
+      sure = sure && !answer.unsure && answer.t - answer.error > ray.tmin && answer.t + answer.error <= ray.tmax;
       if (sure) hits.push_back(hit_of(ray, {&scene.geometry(), instance, answer}));
     }
     return sure ? ray.tmax : -infinity;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <vector>
+#include <utility>
 
 #include "cpu/moderate.h"
 #include "cpu/reference/trial.h"
@@ -43,21 +42,25 @@ struct Trial {
   }
 
   /// What bounds in double cannot rule out.
-  void try_possible() const {
-    using Primitive = std::tuple<bool, std::uint32_t>;  // whether it is a triangle, and which
-    std::vector<Primitive> possible;
-    const auto collect = [](void* to, const BvhAnswer& a) {
-      static_cast<std::vector<Primitive>*>(to)->emplace_back(a.part == BvhAnswer::triangle, a.index);
-    };
-    bvh_queries().certain_all(scene.job(), ray, error, collect, &possible);
-    std::sort(possible.begin(), possible.end());
-    possible.erase(std::unique(possible.begin(), possible.end()), possible.end());
-    for (const auto& [is_triangle, index] : possible)
+  void try_possible(std::vector<BvhFound>& possible) const {
+    std::vector<BvhAnswer> answers;
+    const auto collect = [](void* to, const BvhAnswer& a) { static_cast<std::vector<BvhAnswer>*>(to)->push_back(a); };
+    bvh_queries().certain_all(scene.job(), ray, error, collect, &answers);
+    std::vector<std::pair<bool, std::uint32_t>> primitives;  // whether it is a triangle, and which
+    for (const BvhAnswer& a : answers) {
+      possible.push_back({&scene.geometry(), placed.instance, a});
+      primitives.emplace_back(a.part == BvhAnswer::triangle, a.index);
+    }
+    std::sort(primitives.begin(), primitives.end());
+    primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+    for (const auto& [is_triangle, index] : primitives)
       is_triangle ? reference::try_triangle(placed, scene.geometry(), index, sink)
                   : reference::try_quadric(placed, scene.geometry(), index, sink);
   }
 
-  void run() const { scene.moderate() && is_moderate(ray) ? try_possible() : try_leaves(); }
+  void run(std::vector<BvhFound>& possible) const {
+    scene.moderate() && is_moderate(ray) ? try_possible(possible) : try_leaves();
+  }
 };
 
 }  // namespace
@@ -67,18 +70,21 @@ RayError placing_error(const Ray& ray, const WorldToObject& map) {
   return {six_roundings * largest_component(ray.origin - map.origin), six_roundings * largest_component(ray.direction)};
 }
 
-void trace_exactly(const BvhScene& scene, const BvhInstances& instances, Ray ray, double end, reference::Sink& sink) {
+std::vector<BvhFound> trace_exactly(const BvhScene& scene, const BvhInstances& instances, Ray ray, double end,
+                                    reference::Sink& sink) {
+  std::vector<BvhFound> possible;
   const reference::LocalRay world(ray);
   Ray shorter = ray;
   shorter.tmax = std::min(ray.tmax, end);
-  Trial{scene, {ray, world, nullptr}, shorter, {}, sink}.run();
-  if (instances.empty()) return;
+  Trial{scene, {ray, world, nullptr}, shorter, {}, sink}.run(possible);
+  if (instances.empty()) return possible;
   instances.for_met(shorter, [&](const Instance& instance, const BvhScene& group, Ray local) {
     const reference::LocalRay placed(world, instance.to_group);
     local.tmax = std::min(shorter.tmax, reach(sink));
-    Trial{group, {ray, placed, &instance}, local, placing_error(ray, instance.to_group), sink}.run();
+    Trial{group, {ray, placed, &instance}, local, placing_error(ray, instance.to_group), sink}.run(possible);
     return reach(sink);
   });
+  return possible;
 }
 
 }  // namespace rayengine

@@ -6,6 +6,7 @@
 #include "cpu/bvh_tracer.h"
 #include "cpu/embree_tracer.h"
 #include "cpu/reference_tracer.h"
+#include "engine/certify.h"
 #include "engine/hybrid/hybrid_tracer.h"
 #include "gpu/cones_tracer.h"
 #include "gpu/grid_tracer.h"
@@ -69,6 +70,7 @@ std::unique_ptr<Tracer> make_hybrid(std::shared_ptr<const Geometry> geometry, co
 }
 
 std::unique_ptr<Tracer> make_auto(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  if (options.precision == Precision::certified) return make_bvh(std::move(geometry), options);
   if (!may_have_gpu()) {
     if (options.say) options.say("this machine has no GPU: the processor works alone");
     return make_embree(std::move(geometry), options);
@@ -82,6 +84,7 @@ std::unique_ptr<Tracer> make_auto(std::shared_ptr<const Geometry> geometry, cons
 }
 
 constexpr std::array embree_precisions{Precision::fast, Precision::robust};
+constexpr std::array auto_precisions{Precision::fast, Precision::robust, Precision::certified};
 constexpr std::array bvh_precisions{Precision::robust, Precision::certified};
 constexpr std::array stream_precisions{Precision::fast, Precision::robust};
 constexpr std::array objects_precisions{Precision::half, Precision::fast, Precision::robust};
@@ -93,7 +96,7 @@ struct Entry {
   std::span<const Precision> precisions;
 };
 
-constexpr Entry automatic{{"auto", "the best for this machine"}, make_auto, embree_precisions};
+constexpr Entry automatic{{"auto", "the best for this machine"}, make_auto, auto_precisions};
 
 constexpr std::array registry{
     Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
@@ -136,6 +139,18 @@ const Entry& find(std::string_view name) {
               list(registry, [](auto& e) { return e.info.name; }));
 }
 
+bool holds(const Entry& entry, Precision precision) {
+  return std::find(entry.precisions.begin(), entry.precisions.end(), precision) != entry.precisions.end();
+}
+
+/// What a tracer that proves nothing itself finds at `robust`, proven.
+std::unique_ptr<Tracer> make_certified(const Entry& entry, std::shared_ptr<const Geometry> geometry,
+                                       const TracerOptions& options) {
+  TracerOptions robust = options;
+  robust.precision = Precision::robust;
+  return make_certifying(entry.make(geometry, robust), make_bvh(geometry, options));
+}
+
 }  // namespace
 
 std::span<const TracerInfo> tracer_list() {
@@ -150,11 +165,11 @@ std::span<const TracerInfo> tracer_list() {
 std::unique_ptr<Tracer> make_tracer(std::string_view name, std::shared_ptr<const Geometry> geometry,
                                     const TracerOptions& options) {
   const Entry& entry = find(name);
-  if (std::find(entry.precisions.begin(), entry.precisions.end(), options.precision) == entry.precisions.end())
-    throw Error("the tracer " + std::string(entry.info.name) + " cannot hold precision " +
-                std::string(to_string(options.precision)) + ": choose " +
-                list(entry.precisions, [](Precision p) { return to_string(p); }));
-  return entry.make(std::move(geometry), options);
+  if (holds(entry, options.precision)) return entry.make(std::move(geometry), options);
+  if (options.precision == Precision::certified) return make_certified(entry, std::move(geometry), options);
+  throw Error("the tracer " + std::string(entry.info.name) + " cannot hold precision " +
+              std::string(to_string(options.precision)) + ": choose " +
+              list(entry.precisions, [](Precision p) { return to_string(p); }) + ", certified");
 }
 
 }  // namespace rayengine

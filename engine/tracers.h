@@ -27,8 +27,9 @@ struct TracerInfo {
 std::span<const TracerInfo> tracer_list();
 
 /// Makes a tracer by name; `auto` is `embree`, or `hybrid` where there is a GPU that is more than software: one that is
-/// looked for, and tried, when there is enough work to repay that. Throws Error on an unknown name or a precision that
-/// the tracer cannot hold, naming those it can.
+/// looked for, and tried, when there is enough work to repay that; for `certified` it is `bvh`. Every tracer holds
+/// `certified`: what it finds is proven by `bvh` (see engine/certify.h). Throws Error on an unknown name or a precision
+/// that the tracer cannot hold, naming those it can.
 std::unique_ptr<Tracer> make_tracer(std::string_view name, std::shared_ptr<const Geometry> geometry,
                                     const TracerOptions& options = {});
 

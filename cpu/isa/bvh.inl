@@ -246,9 +246,8 @@ INLINE bool is_unsure(const State<Reals>& s, std::size_t i) {
 
 INLINE BvhAnswer certain_answer_of(const State<Reals>& s, std::size_t i) {
   BvhAnswer answer = answer_of(s, i);
-  const double t = s.certainty.t[i], before = t - s.certainty.low[i], after = s.rays.nearest[i] - t;
-  answer.t = t;
-  answer.error = (before > after ? before : after) + roundoff_of(t);
+  answer.t = s.certainty.t[i];
+  answer.error = stated_error(answer.t, s.certainty.low[i], s.rays.nearest[i]);
   answer.unsure = is_unsure(s, i);
   return answer;
 }

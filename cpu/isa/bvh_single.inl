@@ -127,14 +127,19 @@ bool trace_alone(const BvhJob& job, LocalRays& local, int k, std::uint32_t child
   return hit;
 }
 
-INLINE double roundoff_of(double t) { return std::numeric_limits<double>::epsilon() / 2 * size_of(t); }
+/// The bound that goes with t when the exact one lies in [low, high].
+INLINE double stated_error(double t, double low, double high) {
+  const double before = t - low, after = high - t;
+  return (before > after ? before : after) + std::numeric_limits<double>::epsilon() / 2 * size_of(t);
+}
 
-/// Reports what may be hit within the interval.
+/// Reports what may be hit within the interval: as unsure where the primitive may be missed, not where t may lie
+/// outside.
 INLINE void collect_possible(const State<double>& s, BvhAnswer answer, bool certain, CollectAnswer collect, void* to) {
   const double low = answer.t - answer.error, high = answer.t + answer.error;
   if (high <= s.rays.tmin || low > s.rays.nearest) return;
-  answer.error += roundoff_of(answer.t);
-  answer.unsure = !certain || !(low > s.rays.tmin && high <= s.rays.nearest);
+  answer.error = stated_error(answer.t, low, high);
+  answer.unsure = !certain;
   collect(to, answer);
 }
 

@@ -19,6 +19,8 @@ class Closest final : public Sink {
   }
   double reach() const override { return best_ ? std::min(static_cast<double>(best_->at.t), ray_.tmax) : ray_.tmax; }
 
+  const std::optional<Candidate>& best() const { return best_; }
+
   Hit hit() const {
     if (!best_) return {};
     Hit hit = describe(ray_, *best_);

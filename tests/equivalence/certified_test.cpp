@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <tuple>
 
@@ -30,17 +31,40 @@ class Certified : public testing::TestWithParam<std::tuple<const char*, Case>> {
   void expect_exact(std::span<const Ray> rays) const;
 };
 
+std::string text(const Hit& hit) {
+  char line[200];
+  std::snprintf(line, sizeof line, "object %d part %d t %.17g +- %.3g status %u", static_cast<int>(hit.object),
+                static_cast<int>(hit.primitive), hit.t, hit.error, hit.status);
+  return line;
+}
+
 std::string name_of(const testing::TestParamInfo<Certified::ParamType>& info) {
   return std::get<const char*>(info.param) + ("_" + std::get<Case>(info.param).name);
 }
 INSTANTIATE_TEST_SUITE_P(Tracers, Certified,
                          testing::Combine(testing::Values("bvh"), testing::ValuesIn(test::all_cases())), name_of);
 
-std::string text(const Hit& hit) {
-  char line[200];
-  std::snprintf(line, sizeof line, "object %d part %d t %.17g +- %.3g status %u", static_cast<int>(hit.object),
-                static_cast<int>(hit.primitive), hit.t, hit.error, hit.status);
-  return line;
+/// What other tracers propose is proven, and comes out the same to the bit.
+class Proposed : public Certified {};
+INSTANTIATE_TEST_SUITE_P(Tracers, Proposed,
+                         testing::Combine(testing::Values("embree", "stream", "objects", "grid", "cones", "points",
+                                                          "hybrid"),
+                                          testing::ValuesIn(test::all_cases())),
+                         name_of);
+
+TEST_P(Proposed, GivesTheSameBits) {
+  const auto tested = tracer(),
+             certifier = make_tracer("bvh", std::get<Case>(GetParam()).geometry, {.precision = Precision::certified});
+  EXPECT_EQ(tested->precision(), Precision::certified);
+  EXPECT_EQ(tested->name(), std::get<const char*>(GetParam()));
+  for (const auto& rays : {random_rays(geometry().bounds, 400, 15), aimed_rays(geometry(), 400)}) {
+    std::vector<Hit> hits(rays.size()), expected(rays.size());
+    tested->closest(rays, hits, RayClass::bounce);
+    certifier->closest(rays, expected, RayClass::bounce);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      ASSERT_EQ(std::memcmp(&hits[i], &expected[i], sizeof(Hit)), 0)
+          << "ray " << i << ": " << text(hits[i]) << ", alone " << text(expected[i]);
+  }
 }
 
 bool same(const Hit& a, const Hit& exact) {
