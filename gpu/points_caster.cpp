@@ -1,8 +1,8 @@
 #include "gpu/points_caster.h"
 
-#include <chrono>
 #include <ctime>
 
+#include "accel/stopwatch.h"
 #include "gpu/await.h"
 #include "gpu/cast_method.h"
 #include "gpu/gl_thread.h"
@@ -15,6 +15,8 @@ class PointsCaster::Device {
   Device(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
          std::span<const CastMaterial> materials, const glm::vec3& background, const PointsOptions& options)
       : scene_(std::move(geometry), lights, materials, background, options) {}
+
+  const GpuInfo& gpu() { return scene_.context().info(); }
 
   void draw(const CastView& view) {
     if (color_.width != view.width || color_.height != view.height) resize(view);
@@ -85,15 +87,15 @@ namespace {
 
 template <class Work>
 CastSeconds timed(const Work& work) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  const Stopwatch watch;
   const std::clock_t processor = std::clock();
   work();
-  return {std::chrono::duration<double>(Clock::now() - start).count(),
-          static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
+  return {watch.seconds(), static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
 }
 
 }  // namespace
+
+const GpuInfo& PointsCaster::gpu() const { return device_->gpu(); }
 
 CastSeconds PointsCaster::time(const CastView& view) {
   return thread_->run([&] { return timed([&] { device_->draw(view); }); });

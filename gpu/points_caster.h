@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "accel/geometry.h"
+#include "gpu/context.h"
 #include "gpu/ray_caster.h"
 
 namespace rayengine {
@@ -69,6 +70,8 @@ class PointsCaster {
   /// The same for one part of the work, on the rays that the picture drawn last has left: it must be of the same view.
   /// Throws Error where there is no such part, or more than three passes, whose rays are not all left.
   CastSeconds time(const CastView& view, Part part);
+
+  const GpuInfo& gpu() const;
 
  private:
   class Device;

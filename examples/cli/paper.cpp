@@ -13,7 +13,7 @@ struct Paper {
   std::string_view name;
   int (*run)(const PaperOptions&);
 };
-constexpr std::array papers{Paper{"carr", run_carr}};
+constexpr std::array papers{Paper{"carr", run_carr}, Paper{"ralovich", run_ralovich}};
 
 std::vector<std::string> names() {
   std::vector<std::string> result;
@@ -41,16 +41,21 @@ void add_paper(CLI::App& app, Action& action) {
   CLI::App* sub = add_subcommand(
       app, "paper", "Repeat a paper's experiment, as table, chart and page",
       "  rayengine paper carr -o carr\n"
-      "  rayengine paper carr balls.nff dragon.ply -o carr\n\n"
+      "  rayengine paper carr balls.nff dragon.ply -o carr\n"
+      "  rayengine paper ralovich bunny.ply --size 256x256 -o ralovich\n\n"
       "carr: processor alone, with a GPU read back synchronously and asynchronously, and with an infinitely fast one;\n"
-      "  on 8,000 made balls and a made mesh of 200,000 triangles unless scenes are named.",
+      "  on 8,000 made balls and a made mesh of 200,000 triangles unless scenes are named.\n"
+      "ralovich: rays as points through geometry shaders, beside a fragment shader; on made scenes of the paper's "
+      "sizes,\n"
+      "  and the meshes that are named.",
       options->common);
   sub->add_option("PAPER", options->name, "Which: " + CLI::detail::join(names(), ", "))
       ->type_name("")
       ->required()
       ->check(CLI::IsMember(names()));
-  sub->add_option("SCENE", options->scenes, "Scenes to use instead")->type_name("");
+  sub->add_option("SCENE", options->scenes, "Scenes to use instead, or beside")->type_name("");
   sub->add_option("-o,--output", options->output, "Folder for what results")->type_name("DIR")->required();
+  add_size(sub, options->size, "512x512");
   sub->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -14,10 +14,12 @@ struct PaperOptions {
   std::string name;
   std::vector<std::filesystem::path> scenes;
   std::filesystem::path output;
+  std::optional<glm::ivec2> size;  ///< of pictures, where an experiment takes it
 };
 
 // Each repeats one paper's experiment into the folder `output`; the result is the exit code.
 int run_carr(const PaperOptions& options);
+int run_ralovich(const PaperOptions& options);
 
 /// The scenes that were named, each with its file's name.
 std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& options);

@@ -411,5 +411,12 @@ TEST_F(Cli, PaperCarrWritesItsFourRows) {
   EXPECT_NE(drawn, outcome.err.find("gnuplot is not installed") != std::string::npos);
 }
 
+TEST_F(Cli, PaperRalovichTakesMeshesAlone) {
+  const test::Outcome outcome = run("paper ralovich scene.nff -o ralovich");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("triangles alone: name a mesh"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(file("ralovich/ralovich.csv")));
+}
+
 }  // namespace
 }  // namespace rayengine

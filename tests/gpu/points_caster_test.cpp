@@ -103,6 +103,12 @@ TEST_P(PointsCasting, AmbientLightIsSeenWithoutLights) {
   expect_the_renderers(scene, cast(scene, o), 1);
 }
 
+TEST_P(PointsCasting, WithoutAGridAsWell) {
+  PointsOptions o = options();
+  o.naive = true, o.reflections = 1;
+  expect_the_renderers(corner(), cast(corner(), o), 1);
+}
+
 TEST(PointsCaster, PicturesOfOtherSizesMayFollow) {
   Scene scene = corner();
   PointsCaster caster(scene.geometry, cast_lights(scene), cast_materials(scene), scene.background.color,
