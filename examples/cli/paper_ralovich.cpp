@@ -81,7 +81,7 @@ std::string times_chart(const Results& r) {
   }
   return data +
          "END\nset style data histogram\nset style fill solid 0.8\nset logscale y\nset ylabel 'milliseconds'\n"
-         "set grid ytics\nset key top left\nset bmargin 4\n"
+         "set grid ytics\nset key outside top horizontal\nset xtics noenhanced\nset bmargin 4\n"
          "plot $data using 2:xtic(1) title 'points', '' using 3 title 'without geometry shader', "
          "'' using 4 title 'fragment'";
 }
@@ -93,7 +93,8 @@ std::string stages_chart(const Results& r) {
                         s.geometry, s.fragment);
   return data +
          "END\nset style data histogram\nset style histogram rowstacked\nset style fill solid 0.8\nset boxwidth 0.8\n"
-         "set yrange [0:100]\nset ylabel 'percent'\nset key outside top horizontal\nset bmargin 4\n"
+         "set yrange [0:100]\nset ylabel 'percent'\nset key outside top horizontal\nset xtics noenhanced\nset bmargin "
+         "4\n"
          "plot $data using 2:xtic(1) title 'vertex', '' using 3 title 'geometry', '' using 4 title 'fragment'";
 }
 
