@@ -31,12 +31,13 @@ struct Growing {
   }
 
   void settle(std::span<const ConeRay> rays) {
-    float tangent = 0, setback = -static_cast<float>(infinity);
-    for (const ConeRay& ray : rays) tangent = kernels::larger(tangent, kernels::cone_tangent(axis, direction_of(ray)));
-    kernels::cone_opened(tangent, cosine, sine);
-    for (const ConeRay& ray : rays)
-      setback = kernels::larger(setback, kernels::cone_setback(apex, axis, sine / cosine, vec(ray.origin)));
-    kernels::cone_set_back(apex, axis, cosine, sine, setback, apex, cosine);
+    const float tangent = sine / cosine;
+    float widest = tangent, setback = -static_cast<float>(infinity);
+    for (const ConeRay& ray : rays) {
+      widest = kernels::larger(widest, kernels::cone_tangent(axis, direction_of(ray)));
+      setback = kernels::larger(setback, kernels::cone_setback(apex, axis, tangent, vec(ray.origin)));
+    }
+    kernels::cone_settled(apex, axis, cosine, widest, setback, apex, cosine, sine);
   }
 };
 

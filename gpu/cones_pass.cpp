@@ -19,12 +19,10 @@ Program make_build() {
                               {}});
 }
 
-Program make_test(KernelType type, bool several_types) {
+Program make_test(KernelType type, const std::vector<std::string>& defines) {
   const Stage vertex{GL_VERTEX_SHADER,
                      {"accel/kernels/prelude.glsl", "accel/kernels/ray_cone.glsl", "gpu/shaders/cones/point.vert.glsl"},
                      {}};
-  std::vector<std::string> defines;
-  if (several_types) defines.push_back("SEVERAL_TYPES");
   return Program(kernel_name(type), {vertex, kernel_stage(type, point_sources(), defines)});
 }
 
@@ -42,16 +40,19 @@ std::vector<std::string_view> point_sources() {
   return {"gpu/shaders/stream/ray.glsl", "gpu/shaders/stream/consider.glsl", "gpu/shaders/cones/point.glsl"};
 }
 
-ConesPass::ConesPass(const ConesScene& scene, glm::ivec2 extent, GLsizei tile)
+ConesPass::ConesPass(const ConesScene& scene, glm::ivec2 extent, GLsizei tile, const std::vector<std::string>& defines)
     : scene_(scene),
       tile_(tile),
       build_(make_build()),
       apexes_(make_texture(GL_RGBA32F, extent.x / tile, extent.y / tile)),
       axes_(make_texture(GL_RGBA32F, extent.x / tile, extent.y / tile)) {
   require_points(tile);
-  const bool several = scene.bounded.size() > 1;
-  if (several) before_ = make_texture(GL_RG32UI, extent.x, extent.y);
-  for (const ConesScene::Run& run : scene.bounded) tests_.push_back(make_test(scene.textures.types[run.type], several));
+  std::vector<std::string> all = defines;
+  if (scene.bounded.size() > 1) {
+    all.push_back("SEVERAL_TYPES");
+    before_ = make_texture(GL_RG32UI, extent.x, extent.y);
+  }
+  for (const ConesScene::Run& run : scene.bounded) tests_.push_back(make_test(scene.textures.types[run.type], all));
   glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT0, apexes_.object.id(), 0);
   glNamedFramebufferTexture(frame_.id(), GL_COLOR_ATTACHMENT1, axes_.object.id(), 0);
   const std::array<GLenum, 2> both{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};

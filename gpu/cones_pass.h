@@ -17,7 +17,7 @@ class ConesPass {
  public:
   /// For textures of up to `extent` rays in tiles of `tile` x `tile`, of which it is a multiple. `scene` must outlive
   /// this. `defines` are added to the kernels. Throws Error when the device draws no points of that size.
-  ConesPass(const ConesScene& scene, glm::ivec2 extent, GLsizei tile);
+  ConesPass(const ConesScene& scene, glm::ivec2 extent, GLsizei tile, const std::vector<std::string>& defines = {});
 
   /// Builds the cones of the rays that are bound as gpu/shaders/stream/ray.glsl has them, of which `extent` are in use.
   void build(glm::ivec2 extent);

@@ -64,10 +64,11 @@ KERNEL VEC3 cone_translated(VEC3 apex, VEC3 axis, REAL cosine, REAL sine, VEC3 p
   return either_vector(along >= reach, apex, either_vector(-along >= reach, p, moved));
 }
 
-// What follows settles a cone in the face of rounding: its opening and how far its apex stands back are measured afresh over
-// all rays, for the axis and the apex as they were stored, so that nothing accumulates; and widened by more than the
-// measuring itself can be off. With u = 2^-24: a component along the axis is off by less than 4 u of the vector's length, one
-// across it by less than 8 u, lengths and quotients add 4 u. 32 u covers a direction, twice that all the rest.
+// What follows settles a cone in the face of rounding: how far rays stick out of its opening, and how far its apex must stand
+// back, are measured afresh over all rays, for the axis, apex and opening as they were stored, so that nothing accumulates;
+// and widened by more than the measuring itself can be off. With u = 2^-24: a component along the axis is off by less than
+// 4 u of the vector's length, one across it by less than 8 u, lengths and quotients add 4 u. 32 u covers a direction, twice
+// that all the rest.
 KERNEL void across_and_along(VEC3 axis, VEC3 a, OUT(REAL) across, OUT(REAL) along) {
   REAL one = 1;
   along = inner(axis, a);
@@ -82,7 +83,8 @@ KERNEL REAL cone_tangent(VEC3 axis, VEC3 r) {
   return pick(along > 0, (across / along) * (1 + CONE_SLACK) + CONE_SLACK, REAL_MAX);
 }
 
-// How far back along the axis the apex must move for the cone to hold p; negative when it may come forward.
+// How far back along the axis the apex of a cone of at least this opening must move to hold p; negative when it may come
+// forward.
 KERNEL REAL cone_setback(VEC3 apex, VEC3 axis, REAL tangent, VEC3 p) {
   REAL one = 1;
   REAL across; REAL along;
@@ -93,12 +95,14 @@ KERNEL REAL cone_setback(VEC3 apex, VEC3 axis, REAL tangent, VEC3 p) {
   return pick(setback <= TOO_FAR, setback, REAL_MAX);
 }
 
-// Moves the apex back.
-KERNEL void cone_set_back(VEC3 apex, VEC3 axis, REAL cosine, REAL sine, REAL setback, OUT(VEC3) new_apex, OUT(REAL) new_cosine) {
+// The cone with the opening and the setback that were measured; what held everything still does.
+KERNEL void cone_settled(VEC3 apex, VEC3 axis, REAL cosine, REAL widest, REAL setback, OUT(VEC3) new_apex, OUT(REAL) new_cosine, OUT(REAL) new_sine) {
   REAL one = 1;
+  REAL opened;
+  cone_opened(widest, opened, new_sine);
   REAL size = (magnitude(apex.x) + magnitude(apex.y)) + (magnitude(apex.z) + magnitude(setback));
-  new_apex = combined(one, apex, -(setback + CONE_SLACK * size * cosine / sine), axis);
-  new_cosine = pick(size <= TOO_FAR, cosine, -one);
+  new_apex = combined(one, apex, -(setback + CONE_SLACK * size * opened / new_sine), axis);
+  new_cosine = pick(both(cosine >= 0, size <= TOO_FAR), opened, -one);
 }
 
 // Whether no ray of the cone meets the sphere. The paper's condition to keep a sphere is

@@ -13,7 +13,7 @@ struct Paper {
   std::string_view name;
   int (*run)(const PaperOptions&);
 };
-constexpr std::array papers{Paper{"carr", run_carr}, Paper{"ralovich", run_ralovich}};
+constexpr std::array papers{Paper{"carr", run_carr}, Paper{"ralovich", run_ralovich}, Paper{"szecsi", run_szecsi}};
 
 std::vector<std::string> names() {
   std::vector<std::string> result;
@@ -47,7 +47,9 @@ void add_paper(CLI::App& app, Action& action) {
       "  on 8,000 made balls and a made mesh of 200,000 triangles unless scenes are named.\n"
       "ralovich: rays as points through geometry shaders, beside a fragment shader; on made scenes of the paper's "
       "sizes,\n"
-      "  and the meshes that are named.",
+      "  and the meshes that are named.\n"
+      "szecsi: the hierarchical ray engine against the plain one, 10 to 10,000 triangles of glass; images of its "
+      "cones.",
       options->common);
   sub->add_option("PAPER", options->name, "Which: " + CLI::detail::join(names(), ", "))
       ->type_name("")

@@ -20,6 +20,7 @@ struct PaperOptions {
 // Each repeats one paper's experiment into the folder `output`; the result is the exit code.
 int run_carr(const PaperOptions& options);
 int run_ralovich(const PaperOptions& options);
+int run_szecsi(const PaperOptions& options);
 
 /// The scenes that were named, each with its file's name.
 std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& options);

@@ -39,14 +39,15 @@ void main() {
       cone_extended(axis, cosine, sine, direction, axis, cosine, sine);
       apex = cone_translated(apex, axis, cosine, sine, origin);
     }
-    float tangent = 0;
-    for (int i = first; i < count; ++i)
-      if (next_ray(i)) tangent = larger(tangent, cone_tangent(axis, direction));
-    cone_opened(tangent, cosine, sine);
+    float tangent = sine / cosine;
+    float widest = tangent;
     float setback = -REAL_MAX;
-    for (int i = first; i < count; ++i)
-      if (next_ray(i)) setback = larger(setback, cone_setback(apex, axis, sine / cosine, origin));
-    cone_set_back(apex, axis, cosine, sine, setback, apex, cosine);
+    for (int i = first; i < count && cosine >= 0; ++i) {
+      if (!next_ray(i)) continue;
+      widest = larger(widest, cone_tangent(axis, direction));
+      setback = larger(setback, cone_setback(apex, axis, tangent, origin));
+    }
+    cone_settled(apex, axis, cosine, widest, setback, apex, cosine, sine);
   }
   apex_cosine = vec4(apex, cosine);
   axis_sine = vec4(axis, sine);

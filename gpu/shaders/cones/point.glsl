@@ -1,6 +1,7 @@
 // The ray of this fragment against one primitive, in place of nearest.glsl; after consider.glsl. The depth test keeps the
 // nearest hit. Points come by falling rank and pass where they are as near, so that of primitives as near the one of lowest
-// rank stays; what draws of other types have found before is looked up. PLAIN: a full-screen pass for object_range.
+// rank stays; what draws of other types have found before is looked up. PLAIN: a full-screen pass for object_range. PATHS: no
+// ray looks behind a hit.
 layout(location = 0) out uvec2 result;
 #ifndef PLAIN
 layout(location = 0) flat in uint primitive;
@@ -15,7 +16,12 @@ uvec2 begin() {
   direction = d.xyz;
   tmin = o.w;
   tmax = d.w;
+#ifdef PATHS
+  if (tmax < tmin) discard;  // software skips what follows, and knows no early stencil test where depths are written
+  floor_rank = none;
+#else
   floor_rank = texelFetch(entries, at, 0).x;
+#endif
 #ifdef SEVERAL_TYPES
   uvec2 hit = texelFetch(hits, at, 0).xy;
   best_t = uintBitsToFloat(hit.x);
