@@ -55,6 +55,7 @@ class CertifiedBvh final : public Tracer {
 
   BvhScene scene_;
   BvhInstances instances_;
+  reference::ClosedMeshes closed_{scene_.geometry()};
   double build_seconds_;
 };
 
@@ -93,7 +94,7 @@ std::uint32_t CertifiedBvh::exact_any(const Ray& ray) const {
 
 std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
   if (!is_valid(ray)) return {};
-  reference::All sink(ray);
+  reference::All sink(ray, closed_);
   trace_exactly(scene_, instances_, ray, infinity, sink);
   std::vector<Hit> hits = sink.hits();
   for (Hit& hit : hits) hit.status |= status_resolved;

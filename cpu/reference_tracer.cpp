@@ -66,13 +66,14 @@ class ReferenceTracer final : public Tracer {
 
   std::vector<Hit> all(const Ray& ray) const {
     if (!is_valid(ray)) return {};
-    reference::All sink(ray);
+    reference::All sink(ray, closed_);
     walk_.trace(ray, sink);
     return sink.hits();
   }
 
   std::shared_ptr<const Geometry> geometry_;
   reference::Walk walk_;
+  reference::ClosedMeshes closed_{*geometry_};
   double seconds_;
 };
 

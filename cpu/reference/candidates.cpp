@@ -59,6 +59,13 @@ bool before(const Ray& ray, const Candidate& a, const Candidate& b) {
   return order < 0 || (order == 0 && std::tie(a.object, a.primitive) < std::tie(b.object, b.primitive));
 }
 
+bool owns(const Ray& ray, const Candidate& c, const ClosedMeshes& closed) {
+  if (!c.is_triangle || !closed.contains(*c.geometry, c.geometry->triangle_object[c.index])) return true;
+  const LocalRay world(ray);
+  return c.instance ? owns_crossing(LocalRay(world, c.instance->to_group), *c.geometry, c.index)
+                    : owns_crossing(world, *c.geometry, c.index);
+}
+
 Hit describe(const Ray& ray, const Candidate& c) {
   const LocalRay world(ray);
   const std::optional<LocalRay> placed =

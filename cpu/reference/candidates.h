@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "accel/geometry.h"
+#include "cpu/reference/closed_meshes.h"
 #include "cpu/reference/formulas.h"
 
 namespace rayengine::reference {
@@ -26,6 +27,10 @@ int compare_t(const Ray& ray, const Candidate& a, const Candidate& b);
 
 /// compare_t, then object ids, then primitive ids.
 bool before(const Ray& ray, const Candidate& a, const Candidate& b);
+
+/// Whether the hit counts among all hits. Of closed meshes every crossing counts once, though it be at an edge or a
+/// vertex (see owns_crossing); of others every triangle that is touched.
+bool owns(const Ray& ray, const Candidate& candidate, const ClosedMeshes& closed);
 
 /// The answer, rounded to Hit's types, with a bound that covers the rounding of t.
 Hit describe(const Ray& ray, const Candidate& candidate);

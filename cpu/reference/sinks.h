@@ -48,12 +48,13 @@ class Any final : public Sink {
   bool found_ = false;
 };
 
-/// Every hit in order, with the tie bit on those that have one t in common.
+/// Every hit that counts (see owns) in order, with the tie bit on those that have one t in common.
 class All final : public Sink {
  public:
-  explicit All(const Ray& ray) : ray_(ray) {}
+  All(const Ray& ray, const ClosedMeshes& closed) : ray_(ray), closed_(closed) {}
 
   void add(const Candidate& candidate) override {
+    if (!owns(ray_, candidate, closed_)) return;
     const auto earlier = [&](const Candidate& a, const Candidate& b) { return before(ray_, a, b); };
     found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate, earlier), candidate);
   }
@@ -70,6 +71,7 @@ class All final : public Sink {
 
  private:
   const Ray& ray_;
+  const ClosedMeshes& closed_;
   std::vector<Candidate> found_;
 };
 

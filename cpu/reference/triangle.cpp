@@ -41,7 +41,26 @@ bool passes(const std::array<Estimate, 3>& v) {
   return positive != negative;
 }
 
+/// The sign of a vector's first component that is not zero.
+int first_sign(const Vector<Exact>& v) {
+  for (const Exact* component : {&v.x, &v.y, &v.z})
+    if (component->sign() != 0) return component->sign();
+  return 0;
+}
+
 }  // namespace
+
+bool owns_crossing(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
+  const std::array<Estimate, 3> v = estimated_volumes(ray, geometry, triangle);
+  if (v[0].value != 0 && v[1].value != 0 && v[2].value != 0) return passes(v);
+  const Line<Exact> line = ray.exact();
+  const Corners<Exact> k = corners(line.origin, geometry, triangle);
+  const Vector<Exact> edges[] = {k.c - k.b, k.a - k.c, k.b - k.a};
+  int sum = 0;
+  for (int i = 0; i < 3; ++i)
+    sum += v[i].value > 0 ? 1 : v[i].value < 0 ? -1 : first_sign(cross(line.direction, edges[i]));
+  return sum == 3 || sum == -3;
+}
 
 std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {
   if (!passes(estimated_volumes(ray, geometry, triangle))) return std::nullopt;

@@ -12,6 +12,13 @@ namespace rayengine::reference {
 /// they are for a triangle without area or one that is seen edge on. Signs are exact.
 std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);
 
+/// Of the triangles that a ray passes at an edge or a vertex, whether it is this one that counts: the one that would be
+/// passed inside if the ray were moved by (e, e^2, e^3) for an e of next to nothing. A volume changes by
+/// (e, e^2, e^3) . (direction x edge) then, so that neighbours agree. So a line through a closed mesh passes an even
+/// number of triangles. Source of the idea: Edelsbrunner, Muecke, "Simulation of Simplicity" (ACM Transactions on
+/// Graphics 9, 1990).
+bool owns_crossing(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);
+
 /// t of the triangle's plane as a fraction without rounding.
 struct Fraction {
   Exact numerator, denominator;

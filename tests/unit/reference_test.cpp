@@ -311,11 +311,31 @@ TEST(Reference, ASharedEdgeIsATieThatTheLowestIdWins) {
   EXPECT_EQ(closest(*tracer, on_edge).primitive, 0u);
   EXPECT_EQ(closest(*tracer, on_edge).status, status_hit | status_tie);
   EXPECT_FALSE(std::signbit(closest(*tracer, on_edge).u)) << "zero has one sign";
-  EXPECT_EQ(all(*tracer, on_edge).size(), 2u);
+  EXPECT_EQ(all(*tracer, on_edge).size(), 2u) << "the square is no closed mesh";
   const Ray beside = ray({0, 0, 1}, {1. / 3, std::nextafter(1. / 3, 1.), -1});
   EXPECT_EQ(all(*tracer, beside).size(), 1u);
   EXPECT_EQ(closest(*tracer, beside).primitive, 1u);
   EXPECT_EQ(closest(*tracer, beside).status, status_hit);
+}
+
+/// Eight triangles, whose corners and edges lines from the centre can be aimed at without rounding.
+const Mesh octahedron{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+                      {},
+                      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+
+TEST(Reference, AllHitsOfAClosedMeshCountACrossingAtAnEdgeOrAVertexOnce) {
+  const auto tracer = tracer_of(octahedron);
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const glm::dvec3 d(x, y, z);
+        EXPECT_EQ(all(*tracer, ray({0, 0, 0}, d)).size(), 1u) << x << y << z;
+        EXPECT_EQ(all(*tracer, ray(-3. * d, d)).size(), 2u) << x << y << z;
+        // Past the body along its edges and corners: in and out again, or not at all.
+        const glm::dvec3 aside(y, z, x);
+        EXPECT_EQ(all(*tracer, ray(aside - 3. * d, d)).size() % 2, 0u) << x << y << z;
+      }
 }
 
 TEST(Reference, TiltedNeighboursAreHitAtExactlyTheSameT) {
