@@ -12,6 +12,9 @@ namespace {
 constexpr int widest = 1 << 14;
 constexpr std::uint32_t fresh_role = 15;
 
+/// Devices shade points in step that follow each other, and draw best what lies together.
+constexpr std::uint32_t block = 4;
+
 void append(std::vector<glm::uvec4>& to, RayFormat format, std::uint32_t x, std::uint32_t y) {
   const std::uint32_t place = x | y << 14;
   switch (format) {
@@ -29,8 +32,13 @@ PointStream fresh_rays(RayFormat format, const CastView& view) {
                 " pixels, and rays can name " + std::to_string(widest) + " each way: use --tracer embree");
   PointStream stream(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), format);
   std::vector<glm::uvec4> points;
-  for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(view.height); ++y)
-    for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(view.width); ++x) append(points, format, x, y);
+  const glm::uvec2 size(view.width, view.height);
+  const std::uint32_t blocks_across = (size.x + block - 1) / block, blocks_down = (size.y + block - 1) / block;
+  for (std::uint32_t b = 0; b < blocks_across * blocks_down; ++b)
+    for (std::uint32_t i = 0; i < block * block; ++i) {
+      const glm::uvec2 pixel(b % blocks_across * block + i % block, b / blocks_across * block + i / block);
+      if (pixel.x < size.x && pixel.y < size.y) append(points, format, pixel.x, pixel.y);
+    }
   stream.fill(points);
   return stream;
 }
