@@ -31,8 +31,7 @@ LayeredTarget::Target::Target(GLuint layers, GLuint first, GLuint count) : view(
 }
 
 LayeredTarget::LayeredTarget(GLsizei width, GLsizei height, GLsizei targets, GLsizei generations)
-    : generations_(generations),
-      layers_(create_layers(width, height, targets * generations)),
+    : layers_(create_layers(width, height, targets * generations)),
       sum_(make_screen_program("sum", {0, {"gpu/shaders/points/sum.frag.glsl"}, {}})) {
   single_.resize(static_cast<std::size_t>(generations));
   for (Framebuffer& frame : single_) frame = make_framebuffer();

@@ -26,7 +26,6 @@ class LayeredTarget {
     Target(GLuint layers, GLuint first, GLuint count);
   };
 
-  GLsizei generations_;
   TextureObject layers_;
   std::vector<Target> targets_;
   Framebuffer all_ = make_framebuffer();
