@@ -120,6 +120,8 @@ bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
 }
 
 Hit CertifiedBvh::nearest(const Ray& ray, const BvhAnswer& answer) const {
+  if (instances_.empty() && !answer.unsure)
+    return answer.part == BvhAnswer::miss ? Hit{} : hit_of(ray, {&scene_.geometry(), nullptr, answer});
   Nearest nearest;
   if (answer.part != BvhAnswer::miss) nearest.set({&scene_.geometry(), nullptr, answer});
   if (answer.unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))

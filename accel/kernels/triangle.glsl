@@ -48,10 +48,10 @@ KERNEL BOOL triangle_inside(VEC3 w) { return both(one_sign(w, w.x - w.x), (w.x +
 
 // t along the ray, and the barycentrics u of b and v of c, where it hits.
 KERNEL void triangle_crossing(VEC3 shear, VEC3 w, VEC3 depth, OUT(REAL) t, OUT(REAL) u, OUT(REAL) v) {
-  REAL sum = (w.x + w.y) + w.z;
-  t = (((w.x * depth.x + w.y * depth.y) + w.z * depth.z) / shear.z) / sum;
-  u = w.y / sum;
-  v = w.z / sum;
+  REAL per_sum = 1 / ((w.x + w.y) + w.z);
+  t = (((w.x * depth.x + w.y * depth.y) + w.z * depth.z) / shear.z) * per_sum;
+  u = w.y * per_sum;
+  v = w.z * per_sum;
 }
 
 // All of it for one ray and one triangle.

@@ -76,8 +76,8 @@ KERNEL REAL edge_error(REAL size, REAL corner) {
 // weighted by them. `nearly` is what holds for any weights: rounding, and what the ray brings along.
 KERNEL REAL crossing_error(VEC3 w, VEC3 depth, REAL e, REAL per_length, REAL nearly) {
   REAL range = larger(larger(depth.x, depth.y), depth.z) - smaller(smaller(depth.x, depth.y), depth.z);
-  REAL weight = magnitude((w.x + w.y) + w.z) - 4 * e;
-  return pick(weight > 0, nearly + 4 * e * range * per_length / weight, REAL_MAX);
+  REAL per_sum = magnitude(1 / ((w.x + w.y) + w.z));  // the compiler has it already
+  return pick(8 * e * per_sum < 1, nearly + 8 * e * range * per_length * per_sum, REAL_MAX);
 }
 
 // The part of crossing_error that is the same for all triangles; `length` is the ray's component on its largest axis.

@@ -1,5 +1,6 @@
 #include "cpu/reference/candidates.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -23,6 +24,13 @@ int compare_t(const Ray& ray, const Candidate& c, double bound) {
   if (!c.is_triangle || std::isinf(bound) || size_of(difference) > c.at.error) return sign(difference);
   const Fraction t = exact_t(ray, c);
   return (t.numerator - Exact(bound) * t.denominator).sign() * t.denominator.sign();
+}
+
+/// Whether two triangles, of which scanned meshes have some, are one: then t is, too.
+bool same_corners(const Candidate& a, const Candidate& b) {
+  if (a.geometry != b.geometry || a.instance != b.instance) return false;
+  const glm::uvec3 s = a.geometry->triangles[a.index], t = b.geometry->triangles[b.index];
+  return std::is_permutation(&s[0], &s[0] + 3, &t[0]);
 }
 
 Vector<quad> to_world(const Vector<quad>& n, const WorldToObject& map) { return glm::transpose(map.linear) * n; }
@@ -49,6 +57,7 @@ bool in_interval(const Ray& ray, const Candidate& c) {
 int compare_t(const Ray& ray, const Candidate& a, const Candidate& b) {
   const quad difference = a.at.t - b.at.t;
   if (!a.is_triangle || !b.is_triangle || size_of(difference) > a.at.error + b.at.error) return sign(difference);
+  if (same_corners(a, b)) return 0;
   const Fraction s = exact_t(ray, a), t = exact_t(ray, b);
   return (s.numerator * t.denominator - t.numerator * s.denominator).sign() * s.denominator.sign() *
          t.denominator.sign();
