@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include "accel/stopwatch.h"
+#include "accel/tracer.h"
 #include "gpu/await.h"
 #include "gpu/cast_method.h"
 #include "gpu/gl_thread.h"
@@ -29,8 +30,9 @@ class PointsCaster::Device {
   }
 
   void draw_part(const CastView& view, Part part) {
+    if (!method_) throw Error("no picture has been cast whose parts could be timed: cast it first");
     scene_.bind();
-    if (method_) method_->draw_part(view, part);
+    method_->draw_part(view, part);
     await(Fence(), scene_.context());
   }
 
@@ -43,6 +45,8 @@ class PointsCaster::Device {
 
  private:
   void resize(const CastView& view) {
+    if (view.width < 1 || view.height < 1)
+      throw Error("the picture has no pixels: its view needs a width and a height");
     method_.reset();
     color_ = {};
     method_ = make_method(view);

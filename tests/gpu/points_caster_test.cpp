@@ -126,6 +126,7 @@ TEST(PointsCaster, PartsAreTimedWhereThereAreAny) {
     return PointsCaster(scene.geometry, cast_lights(scene), cast_materials(scene), scene.background.color, options);
   };
   PointsCaster three_passes = caster({.reflections = 1});
+  EXPECT_THROW(three_passes.time(view, PointsCaster::Part::vertex), Error);
   const auto picture = three_passes.cast(view);
   for (const auto part : {PointsCaster::Part::vertex, PointsCaster::Part::geometry})
     EXPECT_GT(three_passes.time(view, part).elapsed, 0);
@@ -135,6 +136,23 @@ TEST(PointsCaster, PartsAreTimedWhereThereAreAny) {
     other.cast(view);
     EXPECT_THROW(other.time(view, PointsCaster::Part::vertex), Error);
   }
+}
+
+TEST_P(PointsCasting, WhereThereIsNothingTheBackgroundIsSeen) {
+  Scene scene = corner();
+  scene.geometry = GeometryBuilder().build();
+  const auto colors = cast(scene, options());
+  EXPECT_EQ(std::ranges::count(colors, scene.background.color), std::ssize(colors));
+}
+
+TEST(PointsCaster, AViewWithoutPixelsIsRefused) {
+  const Scene scene = corner();
+  PointsCaster caster(scene.geometry, cast_lights(scene), cast_materials(scene), scene.background.color);
+  CastView view = cast_view(scene.camera);
+  view.height = 0;
+  EXPECT_THROW(caster.cast(view), Error);
+  view.height = 8;
+  EXPECT_EQ(caster.cast(view).size(), static_cast<std::size_t>(8 * view.width));
 }
 
 std::string complaint(const Scene& scene, const PointsOptions& options) {
