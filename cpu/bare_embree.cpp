@@ -15,8 +15,6 @@
 namespace rayengine {
 namespace {
 
-constexpr std::size_t most_tessellated = 16384;  // spheres: 8 million triangles, which is what fits a small machine
-
 template <int N>
 struct Packet;
 template <>
@@ -141,7 +139,6 @@ struct BareEmbree::Impl {
 
   void add(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles);
   void add_spheres();
-  void add_tessellated();
   void attach(RTCGeometry made);
   void commit(bool robust);
   void check() const;
@@ -153,7 +150,6 @@ struct BareEmbree::Impl {
   RTCScene scene = rtcNewScene(device);
   double build_seconds = 0;
   bool triangles_first = false;  ///< geometry 0 holds our triangles
-  std::uint32_t parts_per_sphere = 1;
   int packet_width = 0;
 };
 
@@ -192,20 +188,6 @@ void BareEmbree::Impl::add_spheres() {
   attach(points);
 }
 
-void BareEmbree::Impl::add_tessellated() {
-  const SphereMesh unit = unit_sphere_mesh();
-  std::vector<glm::vec3> vertices;
-  std::vector<glm::uvec3> triangles;
-  for (const Quadric& quadric : geometry->quadrics) {
-    const RoundSphere sphere = *round_sphere(quadric);
-    const auto base = static_cast<std::uint32_t>(vertices.size());
-    for (const glm::dvec3& p : unit.positions) vertices.push_back(sphere.center + sphere.radius * p);
-    for (const glm::uvec3& t : unit.triangles) triangles.push_back(t + base);
-  }
-  parts_per_sphere = static_cast<std::uint32_t>(unit.triangles.size());
-  add(vertices, triangles);
-}
-
 void BareEmbree::Impl::commit(bool robust) {
   rtcSetSceneFlags(scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   const Stopwatch watch;
@@ -223,8 +205,7 @@ int BareEmbree::Impl::width() const {
 bool BareEmbree::holds(const Geometry& geometry, BareShape shape) {
   if (!geometry.instances.empty()) return false;
   if (shape == BareShape::triangles) return geometry.quadrics.empty() && !geometry.triangles.empty();
-  if (geometry.quadrics.empty() || (shape == BareShape::tessellated && geometry.quadrics.size() > most_tessellated))
-    return false;
+  if (geometry.quadrics.empty()) return false;
   return std::ranges::all_of(geometry.quadrics,
                              [](const Quadric& quadric) { return round_sphere(quadric).has_value(); });
 }
@@ -235,7 +216,6 @@ BareEmbree::BareEmbree(std::shared_ptr<const Geometry> geometry, BareShape shape
   impl_->triangles_first = !g.triangles.empty();
   if (impl_->triangles_first) impl_->add(g.vertices, g.triangles);
   if (shape == BareShape::spheres) impl_->add_spheres();
-  if (shape == BareShape::tessellated) impl_->add_tessellated();
   impl_->commit(robust);
 }
 BareEmbree::~BareEmbree() = default;
@@ -273,7 +253,7 @@ Hit BareEmbree::hit(const BareHit& bare) const {
     hit.primitive = bare.primitive - g.objects[hit.object].first;
     hit.u = bare.u, hit.v = bare.v;
   } else {
-    hit.object = g.quadrics[bare.primitive / impl_->parts_per_sphere].object;
+    hit.object = g.quadrics[bare.primitive].object;
     hit.primitive = 0;
   }
   return hit;

@@ -11,9 +11,8 @@ namespace rayengine {
 
 /// What stands in Embree's scene for our geometry.
 enum class BareShape {
-  triangles,    ///< triangles as they are; no quadrics
-  spheres,      ///< spheres as Embree's own sphere points; triangles as they are
-  tessellated,  ///< spheres as 512 triangles each; triangles as they are
+  triangles,  ///< triangles as they are; no quadrics
+  spheres,    ///< spheres as Embree's own sphere points; triangles as they are
 };
 
 /// What Embree itself answers: t, barycentrics and its own ids, or RTC_INVALID_GEOMETRY_ID on a miss.
@@ -27,7 +26,7 @@ struct BareHit {
 class BareEmbree {
  public:
   /// Whether the geometry can be told to Embree in this shape: no instances, and no quadrics but whole round
-  /// spheres, of which `tessellated` takes 16,384 at most.
+  /// spheres.
   static bool holds(const Geometry& geometry, BareShape shape);
 
   /// Needs holds(). Default scene flags, or Embree's robust mode.

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "accel/stopwatch.h"
 #include "cpu/reference_tracer.h"
 #include "engine/batched.h"
-#include "engine/measure/contestant.h"
+#include "engine/measure/race.h"
 #include "engine/measure/rays.h"
 #include "engine/tracers.h"
 
@@ -14,22 +13,7 @@ namespace rayengine {
 namespace {
 
 constexpr int runs = 9;                    // timed, after one to warm up
-constexpr double longest_run = 4;          // seconds; slower ones get fewer rays
-constexpr std::size_t probe_rays = 4096;   // that tell how slow one is
 constexpr std::size_t sample_rays = 2048;  // checked against the oracle
-
-struct RaySet {
-  std::string name;
-  RayClass ray_class;
-  bool any;  ///< asked whether, not where
-  std::vector<Ray> rays;
-};
-
-struct Entry {
-  std::unique_ptr<Contestant> contestant;
-  std::size_t rays = 0;       ///< in one run
-  std::vector<double> rates;  ///< Mrays/s of the runs
-};
 
 /// At most `most` rays: whole runs of neighbours, spread evenly, so that what is coherent stays so.
 std::vector<Ray> thin(std::vector<Ray> rays, std::size_t most) {
@@ -85,45 +69,6 @@ std::vector<Entry> make_entries(const Scene& scene, const BenchOptions& options,
   if (entries.empty())
     throw Error("there is nothing to measure: " + (left_out.empty() ? "no tracer was named" : left_out.front()));
   return entries;
-}
-
-/// Seconds for one query of all rays.
-double time(Contestant& contestant, const RaySet& set, std::span<const Ray> rays) {
-  contestant.poison(rays.size());
-  const Stopwatch watch;
-  set.any ? contestant.any(rays, set.ray_class) : contestant.closest(rays, set.ray_class);
-  return watch.seconds();
-}
-
-/// The best of a few short runs: the first ones pay for memory and caches.
-double probe_seconds(Contestant& contestant, const RaySet& set, std::size_t probe) {
-  double seconds = infinity;
-  for (int run = 0; run < 3; ++run)
-    seconds = std::min(seconds, time(contestant, set, std::span(set.rays).first(probe)));
-  return std::max(seconds, 1e-9);
-}
-
-/// Warms up, and cuts the rays of slow contestants so that a run stays short.
-void warm_up(Entry& entry, const RaySet& set) {
-  const std::size_t probe = std::min(probe_rays, set.rays.size());
-  const double affordable = longest_run * static_cast<double>(probe) / probe_seconds(*entry.contestant, set, probe);
-  const bool slow = affordable < static_cast<double>(set.rays.size());
-  entry.rays = slow ? std::max(probe, static_cast<std::size_t>(affordable)) : set.rays.size();
-  entry.rates.clear();
-  time(*entry.contestant, set, std::span(set.rays).first(entry.rays));
-}
-
-void time_run(Entry& entry, const RaySet& set) {
-  const double seconds = time(*entry.contestant, set, std::span(set.rays).first(entry.rays));
-  entry.rates.push_back(static_cast<double>(entry.rays) / seconds / 1e6);
-}
-
-/// Linear between neighbours; needs a sorted range.
-double quantile(const std::vector<double>& sorted, double q) {
-  const double at = q * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 /// An any-hit answer as a nearest hit that can be compared: the oracle's own where both say the same.

@@ -71,6 +71,7 @@ class Judge {
     beyond_.resize(std::min(beyond_.size(), first_count));
     result_.first = beyond_;
     summarise(t_errors_, result_.max_t_error, result_.p999_t_error);
+    if (!t_errors_.empty()) result_.median_t_error = t_errors_[t_errors_.size() / 2];
     summarise(point_errors_, result_.max_point_error, result_.p999_point_error);
     summarise(normal_errors_, result_.max_normal_error, result_.p999_normal_error);
     return result_;

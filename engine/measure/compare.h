@@ -23,12 +23,15 @@ struct Comparison {
   std::uint64_t nans = 0;
   double max_t_error = 0;  ///< relative to |t|, where ids agree
   double p999_t_error = 0;
+  double median_t_error = 0;
   double max_point_error = 0;  ///< distance between the points of the ray at t, in world units, where ids agree
   double p999_point_error = 0;
   double max_normal_error = 0;  ///< angle between the normals in radians, where ids agree
   double p999_normal_error = 0;
   std::vector<std::uint64_t> ulps;  ///< histogram of differences in t, in float ulps: 0, 1, 2, 3-4, 5-8, ... doubling
   std::vector<std::size_t> first;   ///< indices of the first rays that are beyond bounds
+
+  std::uint64_t wrong() const { return wrong_ids + false_hits + false_misses; }
 };
 
 /// Answers to rays by a tracer of these limits, and the exact ones; spans of equal length.

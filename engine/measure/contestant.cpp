@@ -3,11 +3,15 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <vector>
 
+#include "accel/surface.h"
 #include "cpu/bare_embree.h"
+#include "engine/measure/tessellate.h"
 #include "engine/query.h"
 #include "engine/tracers.h"
 
@@ -51,7 +55,7 @@ class TracerContestant : public Contestant {
 };
 
 constexpr std::array<std::string_view, 3> yardstick_names = {"embree-bare", "embree-sphere", "embree-tess"};
-constexpr std::array yardstick_shapes = {BareShape::triangles, BareShape::spheres, BareShape::tessellated};
+constexpr int yardstick_level = 3;  // 512 triangles a sphere
 
 class BareContestant : public Contestant {
  public:
@@ -94,6 +98,30 @@ class BareContestant : public Contestant {
   std::vector<std::uint32_t> status_;
 };
 
+class TessellatedContestant final : public BareContestant {
+ public:
+  TessellatedContestant(std::string name, std::shared_ptr<const Geometry> exact, Tessellation made, Precision precision)
+      : BareContestant(std::move(name), made.geometry, BareShape::triangles, precision),
+        exact_(std::move(exact)),
+        made_(std::move(made)) {}
+
+  Hit hit(std::size_t i) const override {
+    Hit hit = BareContestant::hit(i);
+    if (!hit.hit()) return hit;
+    const std::uint32_t triangle = made_.geometry->objects[hit.object].first + hit.primitive;
+    hit.normal = glm::vec3(glm::normalize(triangle_normal(*made_.geometry, triangle)));
+    if (exact_->objects[hit.object].kind == Object::Kind::quadric)
+      hit.primitive = made_.parts[triangle], hit.u = hit.v = 0;
+    return hit;
+  }
+
+ private:
+  std::shared_ptr<const Geometry> exact_;
+  Tessellation made_;
+};
+
+bool held_by_embree(Precision precision) { return precision == Precision::fast || precision == Precision::robust; }
+
 }  // namespace
 
 std::span<const std::string_view> yardsticks() { return yardstick_names; }
@@ -102,15 +130,22 @@ std::unique_ptr<Contestant> make_contestant(std::unique_ptr<Tracer> tracer) {
   return std::make_unique<TracerContestant>(std::move(tracer));
 }
 
+std::unique_ptr<Contestant> make_tessellated(std::string name, std::shared_ptr<const Geometry> geometry, int level,
+                                             Precision precision) {
+  if (!held_by_embree(precision)) return nullptr;
+  std::optional<Tessellation> made = tessellate(*geometry, level);
+  if (!made) return nullptr;
+  return std::make_unique<TessellatedContestant>(std::move(name), std::move(geometry), std::move(*made), precision);
+}
+
 std::unique_ptr<Contestant> make_contestant(const std::string& name, std::shared_ptr<const Geometry> geometry,
                                             Precision precision, int threads) {
-  for (std::size_t i = 0; i < yardstick_names.size(); ++i) {
-    if (name != yardstick_names[i]) continue;
-    const bool held = precision == Precision::fast || precision == Precision::robust;
-    if (!held || !BareEmbree::holds(*geometry, yardstick_shapes[i])) return nullptr;
-    return std::make_unique<BareContestant>(name, std::move(geometry), yardstick_shapes[i], precision);
-  }
-  return make_contestant(make_tracer(name, std::move(geometry), {precision, threads}));
+  if (std::ranges::find(yardstick_names, name) == yardstick_names.end())
+    return make_contestant(make_tracer(name, std::move(geometry), {precision, threads}));
+  if (name == "embree-tess") return make_tessellated(name, std::move(geometry), yardstick_level, precision);
+  const BareShape shape = name == "embree-bare" ? BareShape::triangles : BareShape::spheres;
+  if (!held_by_embree(precision) || !BareEmbree::holds(*geometry, shape)) return nullptr;
+  return std::make_unique<BareContestant>(name, std::move(geometry), shape, precision);
 }
 
 }  // namespace rayengine

@@ -30,10 +30,15 @@ class Contestant {
   virtual std::uint32_t status(std::size_t i) const = 0;
 };
 
-/// Names of the yardsticks: plain Embree 3 on the triangles, on Embree's own spheres, and on tessellated spheres.
+/// Names of the yardsticks: plain Embree 3 on the triangles, on Embree's own spheres, and on tessellated quadrics.
 std::span<const std::string_view> yardsticks();
 
 std::unique_ptr<Contestant> make_contestant(std::unique_ptr<Tracer> tracer);
+
+/// Plain Embree 3 on the quadrics as triangles (see tessellate()); its hits have the quadrics' ids, and the triangles'
+/// normals. Null when there is no such tessellation, or the precision is another than fast or robust.
+std::unique_ptr<Contestant> make_tessellated(std::string name, std::shared_ptr<const Geometry> geometry, int level,
+                                             Precision precision);
 
 /// Makes a tracer or a yardstick by name, at a precision. Null when a yardstick cannot hold this geometry or precision.
 /// Throws Error like make_tracer().

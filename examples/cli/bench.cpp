@@ -114,7 +114,7 @@ void add_bench(CLI::App& app, Action& action) {
       "to\n"
       "the lights (shadow) and anywhere (bounce), and random chords of the scene (random).\n"
       "Yardsticks, left out where they cannot hold a scene: embree-bare is plain Embree 3 called on triangles,\n"
-      "embree-sphere Embree's own spheres, embree-tess spheres as 512 triangles each.",
+      "embree-sphere Embree's own spheres, embree-tess quadrics as triangles, 512 a sphere.",
       options->common);
   sub->add_option("SCENE", options->scenes, "Scenes to measure")->type_name("");
   sub->add_option("--tracers", options->tracers, "Tracers and yardsticks, with commas between")->type_name("A,B,...");

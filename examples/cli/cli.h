@@ -24,6 +24,7 @@ void add_render(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
+void add_chart(CLI::App& app, Action& action);
 void add_stress(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

@@ -70,7 +70,7 @@ using CliBench = Cli;
 using CliInfo = Cli;
 
 TEST_F(CliUsage, HelpOnEveryLevelHasExamplesAndDefaults) {
-  for (const std::string sub : {"", "render", "trace", "compare", "bench", "stress", "paper", "info"}) {
+  for (const std::string sub : {"", "render", "trace", "compare", "bench", "chart", "stress", "paper", "info"}) {
     const test::Outcome help = run(sub + " --help");
     EXPECT_EQ(help.code, 0) << sub;
     EXPECT_NE(help.out.find("Examples:"), std::string::npos) << sub;
@@ -86,7 +86,7 @@ TEST_F(CliUsage, VersionIsOneLine) {
 }
 
 TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
-  expect_failure(2, "", "render, trace, compare, bench, stress, paper or info");
+  expect_failure(2, "", "render, trace, compare, bench, chart, stress, paper or info");
   expect_failure(2, "frobnicate", "frobnicate");
   expect_failure(2, "render scene.nff --frobnicate", "--frobnicate");
   expect_failure(2, "render scene.nff --tracer nobody", "choose among auto, embree");
@@ -104,6 +104,7 @@ TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
   expect_failure(2, "compare scene.nff --tracers embree,nobody", "nobody");
   expect_failure(2, "bench scene.nff --tracers embree-naked", "embree-naked");
   expect_failure(2, "bench scene.nff --precisions fast,perfect", "perfect");
+  expect_failure(2, "chart scene.nff", "--output");
   expect_failure(2, "stress --tracers nobody", "nobody");
   expect_failure(2, "stress --precisions perfect", "perfect");
   expect_failure(2, "stress --rays 0", "--rays");
@@ -360,6 +361,30 @@ TEST_F(Cli, StressTellsEveryCaseAsTableJsonAndPage) {
     EXPECT_NE(page.find(name.substr(0, name.find('\''))), std::string::npos) << name;
   }
   EXPECT_TRUE(page.ends_with("</html>\n"));
+}
+
+TEST_F(Cli, ChartShowsTracersAndTessellationsWithTheirFront) {
+  const test::Outcome outcome = run("chart scene.nff -o out --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json told = parse("out/chart.json");
+  std::set<std::string> methods;
+  std::size_t on_front = 0;
+  for (const json& row : told["rows"]) {
+    methods.insert(row["method"].get<std::string>());
+    EXPECT_GT(row["mrays_per_s"], 0);
+    const bool exact = row["tessellation"] == 0, robust = row["precision"] == "robust";
+    EXPECT_TRUE(exact || row["rmse"] > 1e-3) << row;
+    EXPECT_TRUE(!exact || !robust || (row["rmse"] < 1e-6 && row["wrong_share"] == 0)) << row;
+    on_front += row["pareto"].get<bool>();
+  }
+  EXPECT_GE(on_front, 1u);
+  for (const char* method : {"embree", "bvh", "embree-tess1", "embree-tess5"}) EXPECT_TRUE(methods.contains(method));
+  std::size_t broken = 0;
+  for (const json& row : told["distance"])
+    broken += row["method"] == "b^2-ac in float" && row["distance"] > 1e4 && row["wrong_share"] > 0.1;
+  EXPECT_GE(broken, 9u);
+  for (const char* name : {"chart.csv", "distance.csv", "index.html"}) EXPECT_TRUE(fs::exists(file("out") / name));
+  expect_failure(2, "chart scene.nff ../scene.nff -o other", "is taken");
 }
 
 TEST_F(CliInfo, CountsWhatASceneHolds) {

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "cpu/reference_tracer.h"
-#include "cpu/round_sphere.h"
 
 namespace rayengine {
 namespace {
@@ -31,7 +29,6 @@ std::vector<Ray> grid() {
 
 class BareShapes : public testing::TestWithParam<std::tuple<BareShape, RayClass, bool>> {};
 
-/// Tessellated spheres lie inside the round ones, within 2 % of the radius here.
 TEST_P(BareShapes, FindWhatTheOracleFinds) {
   const auto [shape, ray_class, robust] = GetParam();
   const auto geometry = spheres_on_floor();
@@ -52,16 +49,16 @@ TEST_P(BareShapes, FindWhatTheOracleFinds) {
     if (hit.object != exact[i].object || !hit.hit()) continue;
     on_spheres += hit.object > 0;
     EXPECT_EQ(hit.primitive, exact[i].primitive);
-    EXPECT_NEAR(hit.t, exact[i].t, shape == BareShape::tessellated && hit.object > 0 ? 0.1 : 1e-4);
+    EXPECT_NEAR(hit.t, exact[i].t, 1e-4);
   }
   EXPECT_GT(on_spheres, 40u);
-  EXPECT_LE(others, shape == BareShape::tessellated ? 10u : 0u);
+  EXPECT_EQ(others, 0u);
   EXPECT_GT(bare.bytes(), geometry->triangles.size() * sizeof(glm::uvec3));
   EXPECT_GT(bare.build_seconds(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BareShapes,
-                         testing::Combine(testing::Values(BareShape::spheres, BareShape::tessellated),
+                         testing::Combine(testing::Values(BareShape::spheres),
                                           testing::Values(RayClass::primary, RayClass::bounce), testing::Bool()));
 
 TEST(BareEmbree, TrianglesKeepTheirNumbers) {
@@ -83,19 +80,6 @@ TEST(BareEmbree, HoldsOnlyWhatEmbreeKnows) {
   GeometryBuilder builder;
   builder.add(QuadricShape{}, 0, Affine::scale({1, 2, 1}));
   EXPECT_FALSE(BareEmbree::holds(*builder.build(), BareShape::spheres));
-  builder.add(QuadricShape{.type = QuadricType::cone});
-  EXPECT_FALSE(BareEmbree::holds(*builder.build(), BareShape::tessellated));
-}
-
-TEST(SphereMesh, Has512TrianglesOnTheSphereThatFaceOutward) {
-  const SphereMesh mesh = unit_sphere_mesh();
-  ASSERT_EQ(mesh.triangles.size(), 512u);
-  EXPECT_EQ(mesh.positions.size(), 258u);
-  for (const glm::dvec3& p : mesh.positions) EXPECT_NEAR(glm::length(p), 1, 1e-15);
-  for (const glm::uvec3& t : mesh.triangles) {
-    const glm::dvec3 &a = mesh.positions[t.x], &b = mesh.positions[t.y], &c = mesh.positions[t.z];
-    EXPECT_GT(glm::dot(glm::cross(b - a, c - a), a + b + c), 0);
-  }
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ struct StressRow {
   bool aborted = false;
   std::string broken;  ///< the limit that is broken, in words; empty when none is
 
-  std::uint64_t wrong() const { return errors.wrong_ids + errors.false_hits + errors.false_misses; }
+  std::uint64_t wrong() const { return errors.wrong(); }
 };
 
 struct StressReport {
