@@ -18,6 +18,7 @@ void add(RenderStats& sum, const RenderStats& frame) {
   sum.tracer_seconds += frame.tracer_seconds;
   sum.shading_seconds += frame.shading_seconds;
   sum.invalid_rays += frame.invalid_rays;
+  sum.photon_rays += frame.photon_rays;
 }
 
 /// Lets whoever waits for a frame go on, once: when it is nearly done, or has failed.

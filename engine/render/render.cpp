@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "accel/stopwatch.h"
 #include "engine/render/aov.h"
+#include "engine/render/photons.h"
 #include "engine/render/tiles.h"
 
 namespace rayengine {
@@ -19,6 +21,7 @@ namespace {
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 /// Waves of one depth wait for those of the next, so memory and stack grow with it.
 constexpr int most_depth = 1000;
+constexpr int most_photons = 1 << 26;  // 5 GB of them, all told
 /// Tiles per thread at least, so that threads end together.
 constexpr std::size_t tiles_per_thread = 8;
 
@@ -41,6 +44,11 @@ void check(const Scene& scene, const RenderOptions& options) {
   if (options.depth < 0) throw Error("the depth is negative: give the number of bounces, 0 for none");
   if (options.depth > most_depth) throw Error("the depth is above " + std::to_string(most_depth) + ": give less");
   if (options.spp < 1) throw Error("no samples per pixel: give at least 1");
+  if (options.caustics < 0 || options.caustics > most_photons)
+    throw Error("caustics of " + std::to_string(options.caustics) + " photons were asked for: give 0 to " +
+                std::to_string(most_photons));
+  if (options.caustics > 0 && options.shading == Shading::direct)
+    throw Error("the shading direct knows no glass and no mirrors, and so no caustics: choose full");
   if (!scene.geometry) throw Error("the scene has no geometry to render");
   check_materials(*scene.geometry, scene.materials.size());
   for (std::size_t i = 0; i < options.aovs.size(); ++i)
@@ -79,7 +87,7 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
   const CameraFrame camera(scene.camera);
   const Environment environment(scene.background);
   const std::vector<Material> materials = materials_for(options.shading, scene.materials);
-  const Picture picture{*scene.geometry, scene.lights, materials, environment, tracer.limits(), options.depth};
+  Picture picture{*scene.geometry, scene.lights, materials, environment, tracer.limits(), options.depth};
   const PixelSampler sampler(options.spp);
   RenderResult result{Image(scene.camera.size.x, scene.camera.size.y, channels_for(options)), {}};
 
@@ -94,6 +102,14 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
   tbb::enumerable_thread_specific<TileRenderer> renderers(std::cref(picture), std::cref(camera), std::cref(sampler),
                                                           std::cref(tiling), std::cref(options),
                                                           TracerGate(tracer, door));
+  std::optional<Caustics> caustics;
+  if (options.caustics > 0) {
+    arena.execute([&] {
+      caustics.emplace(trace_caustics(scene, tracer, static_cast<std::size_t>(options.caustics), options.depth));
+    });
+    picture.caustics = &caustics->map;
+    result.stats.photon_rays = caustics->rays;
+  }
   std::atomic<std::size_t> done = 0;
   arena.execute([&] {
     tbb::parallel_for(

@@ -24,7 +24,8 @@ struct RenderOptions {
   int spp = 1;    ///< samples a pixel; 1 is its centre
   Shading shading = Shading::full;
   std::vector<Aov> aovs;
-  int threads = 0;                             ///< 0: as many as the machine has
+  int caustics = 0;  ///< photons sent from the lights to find what glass and mirrors focus: see docs/rendering.md
+  int threads = 0;   ///< 0: as many as the machine has
   std::function<void(double share)> progress;  ///< called now and then, from any thread, with the share done
 };
 
@@ -34,6 +35,7 @@ struct RenderStats {
   double tracer_seconds = 0;            ///< spent in the tracer, summed over threads
   double shading_seconds = 0;           ///< spent outside it, summed over threads
   std::uint64_t invalid_rays = 0;
+  std::uint64_t photon_rays = 0;  ///< traced on the way to caustics; not among `rays`
 };
 
 /// Channels R, G, B, A (linear), then those of the AOVs in the order asked for: Z; N.X N.Y N.Z; object; primitive; P.X

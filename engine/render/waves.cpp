@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/render/optics.h"
+#include "engine/render/photons.h"
+#include "engine/render/scatter.h"
 
 namespace rayengine {
 namespace {
@@ -15,22 +16,6 @@ constexpr float least_weight = 1.0f / 2048;
 enum Kind { primary_ray, shadow_ray, reflected_ray, refracted_ray };
 
 bool matters(const glm::vec3& weight) { return std::max({weight.x, weight.y, weight.z}) >= least_weight; }
-
-glm::dvec3 facing(const glm::dvec3& normal, const glm::dvec3& direction) {
-  return glm::dot(normal, direction) > 0 ? -normal : normal;
-}
-
-/// Whether both directions lie on the same side of the plane.
-bool same_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& plane) {
-  return glm::dot(a, plane) * glm::dot(b, plane) > 0;
-}
-
-/// The index on the ray's side over that behind the surface. Nested media are not tracked: outside is 1. An index of 0
-/// is how files say that there is none.
-double index_ratio(const Material& m, bool entering) {
-  if (m.ior == 0) return 1;
-  return entering ? 1 / static_cast<double>(m.ior) : m.ior;
-}
 
 }  // namespace
 
@@ -101,6 +86,9 @@ void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& po
   radiance_[path.sample] += path.weight * (material.ambient * material.color);
   point.departure.set(surface, picture_.limits);
   point.normal = facing(surface.shading_normal, ray.direction);
+  if (picture_.caustics && gathers(material))
+    radiance_[path.sample] += path.weight * (material.diffuse * material.color) *
+                              picture_.caustics->irradiance(surface.position, point.normal);
   point.view = glm::vec3(-ray.direction);
   point.material = surface.material;
   point.path = path;
@@ -110,21 +98,15 @@ void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& po
 
 void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next) {
   const Material& material = picture_.materials[point.material];
-  const glm::dvec3& d = ray.direction;
   glm::vec3 mirror = point.path.weight * material.reflect;
   const glm::vec3 glass = point.path.weight * material.transmit * material.color;
   if (matters(glass)) {
-    const double eta = index_ratio(material, glm::dot(d, surface.normal) < 0);
-    // An interpolated normal may bend the ray back to where it came from: then it passes straight.
-    if (const auto through = refracted(d, point.normal, eta))
-      spawn(next, point, same_side(*through, d, surface.normal) ? *through : d, glass, rays_[refracted_ray]);
+    if (const auto through = passed_through(ray.direction, surface, material))
+      spawn(next, point, *through, glass, rays_[refracted_ray]);
     else
       mirror += glass;
   }
-  const glm::dvec3 back = reflected(d, point.normal);
-  // The same below a mirror's own surface: then the flat normal reflects.
-  const bool outside = !same_side(back, d, surface.normal);
-  spawn(next, point, outside ? back : reflected(d, surface.normal), mirror, rays_[reflected_ray]);
+  spawn(next, point, mirrored(ray.direction, surface), mirror, rays_[reflected_ray]);
 }
 
 void Waves::spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,

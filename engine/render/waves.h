@@ -8,6 +8,7 @@
 
 #include "engine/render/departure.h"
 #include "engine/render/environment.h"
+#include "engine/render/photon_map.h"
 #include "engine/render/tracer_gate.h"
 #include "engine/scene/scene.h"
 
@@ -21,6 +22,7 @@ struct Picture {
   const Environment& environment;
   Limits limits;
   int depth;  ///< bounces after the primary ray
+  const PhotonMap* caustics = nullptr;
 };
 
 /// Traces the trees of rays that grow from primary rays, level by level in waves (Whitted, "An improved illumination

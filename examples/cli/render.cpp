@@ -76,6 +76,8 @@ void check(Options& o) {
   check_output(o.output);
   if (!o.stats.empty()) check_output(o.stats);
   if (o.size) check_size(*o.size, 4);
+  if (o.render.caustics > 0 && o.render.shading == Shading::direct)
+    throw CLI::ValidationError("--caustics", "--shading direct knows no glass and no mirrors: choose full");
 }
 
 struct Seconds {
@@ -99,6 +101,7 @@ Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const
           {"rays", total(stats)},
           {"rays_by_kind", rays},
           {"invalid_rays", stats.invalid_rays},
+          {"photon_rays", stats.photon_rays},
           {"mrays_per_s", static_cast<double>(total(stats)) / seconds.render / 1e6},
           {"load_s", seconds.load},
           {"build_s", seconds.build},
@@ -174,6 +177,8 @@ int run(Options& o) {
 
 void add_picture_options(CLI::App* app, Options& o) {
   add_count(app, "--depth", o.render.depth, {0, 1000}, "Reflections and refractions that may follow each other");
+  add_count(app, "--caustics", o.render.caustics, {0, 1 << 26},
+            "Photons sent from the lights, to light what glass and mirrors focus on");
   add_count(app, "--spp", o.render.spp, {1, 65536}, "Samples a pixel; 1 is its centre");
   app->add_option_function<std::string>(
          "--shading", [&](const std::string& name) { o.render.shading = to_shading(name); },

@@ -180,6 +180,22 @@ TEST_F(CliRender, WritesThePictureAndItsFigures) {
   EXPECT_EQ(stats["shares"][0]["share"], 1.0);
 }
 
+TEST_F(CliRender, CausticsAreAddedWhenAskedFor) {
+  ASSERT_EQ(run("render scene.nff -o plain.exr").code, 0);
+  ASSERT_EQ(run("render scene.nff -o lit.exr --caustics 20000 --stats stats.json").code, 0);
+  EXPECT_GE(parse("stats.json")["photon_rays"], 20000);
+  const Image plain = read_image(file("plain.exr")), lit = read_image(file("lit.exr"));
+  std::size_t brighter = 0, darker = 0;
+  for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+    brighter += lit.pixels[i] > plain.pixels[i];
+    darker += lit.pixels[i] < plain.pixels[i];
+  }
+  EXPECT_GT(brighter, 0u);  // mirrors light the square
+  EXPECT_EQ(darker, 0u);
+  expect_failure(2, "render scene.nff -o x.png --caustics -1", "--caustics");
+  expect_failure(2, "render scene.nff -o x.png --caustics 10 --shading direct", "choose full");
+}
+
 TEST_F(CliRender, QuietSaysNothingAndDefaultsNameThePicture) {
   const test::Outcome outcome = run("render scene.nff --quiet --size 20x10");
   EXPECT_EQ(outcome.code, 0);
@@ -434,6 +450,11 @@ TEST_F(Cli, PaperCarrWritesItsFourRows) {
   EXPECT_TRUE(std::filesystem::exists(file("carr/carr.md")));
   const bool drawn = std::filesystem::exists(file("carr/carr.svg"));
   EXPECT_NE(drawn, outcome.err.find("gnuplot is not installed") != std::string::npos);
+}
+
+TEST_F(Cli, PaperSzecsiHasItsOwnScenesAndSizes) {
+  expect_failure(2, "paper szecsi scene.nff -o x", "its own scenes");
+  expect_failure(2, "paper szecsi --size 64x64 -o x", "its own sizes");
 }
 
 TEST_F(Cli, PaperRalovichTakesMeshesAlone) {
