@@ -9,7 +9,7 @@
 namespace rayengine {
 
 struct GridOptions {
-  double density = 4;                               ///< voxels a primitive, about
+  double density = 2;                               ///< voxels a primitive, about
   std::uint32_t most_along_axis = 1024;             ///< voxels, at most
   std::size_t most_members = std::size_t{1} << 26;  ///< entries in all lists together
 };

@@ -1,9 +1,6 @@
 #include "gpu/glass_paths.h"
 
-#include <ctime>
-
 #include "accel/ray.h"
-#include "accel/stopwatch.h"
 #include "gpu/kernel_program.h"
 
 namespace rayengine {
@@ -11,23 +8,9 @@ namespace {
 
 constexpr int stencil_bits = 8;
 
-CastSeconds now() {
-  static const Stopwatch watch;
-  glFinish();
-  return {watch.seconds(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
-}
-
 glm::ivec2 whole_tiles(glm::ivec2 picture, int tile) { return (picture + tile - 1) / tile * tile; }
 
 }  // namespace
-
-void CastWatch::start() { started_ = now(); }
-
-void CastWatch::stop(double times) {
-  const CastSeconds stopped = now();
-  seconds_.elapsed += times * (stopped.elapsed - started_.elapsed);
-  seconds_.processor += times * (stopped.processor - started_.processor);
-}
 
 GlassPaths::GlassPaths(const ConesScene& scene, glm::ivec2 picture, const GlassOptions& options)
     : scene_(scene),

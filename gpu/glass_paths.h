@@ -3,21 +3,11 @@
 #include <array>
 #include <optional>
 
+#include "gpu/cast_watch.h"
 #include "gpu/cones_pass.h"
 #include "gpu/glass_caster.h"
 
 namespace rayengine {
-
-/// Adds up the time between start and stop, while the device is made to finish at both.
-class CastWatch {
- public:
-  void start();
-  void stop(double times = 1);
-  const CastSeconds& seconds() const { return seconds_; }
-
- private:
-  CastSeconds seconds_, started_;
-};
 
 /// The paths of one picture: rays and hits as textures, a texel a pixel, rounded up to whole tiles.
 class GlassPaths {

@@ -3,7 +3,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
-#include "accel/stopwatch.h"
 #include "accel/tracer.h"
 #include "gpu/gl_thread.h"
 #include "gpu/probe.h"
@@ -162,8 +161,18 @@ GridWork GridCaster::measure(const CastView& view) {
   return thread_->run([&] { return device_->draw(view, true); });
 }
 
+CastSeconds GridCaster::time(const CastView& view) {
+  return thread_->run([&] {
+    CastWatch watch;
+    watch.start();
+    device_->draw(view, false);
+    watch.stop();
+    return watch.seconds();
+  });
+}
+
 glm::uvec3 GridCaster::resolution() const { return device_->grid().counts; }
-std::string GridCaster::device() const { return device_->gpu().renderer; }
+const GpuInfo& GridCaster::gpu() const { return device_->gpu(); }
 std::size_t GridCaster::members() const { return device_->grid().members(); }
 
 }  // namespace rayengine

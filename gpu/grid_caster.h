@@ -3,7 +3,6 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "accel/geometry.h"
@@ -34,13 +33,14 @@ class GridCaster {
   /// device fails, or its textures are smaller than the picture.
   std::vector<glm::vec3> cast(const CastView& view);
 
-  /// Draws `view` without reading it back, and says what that took; kernels by turns are each waited for.
+  /// Draws `view` without reading it back, and says what its kernels did; each is waited for.
   GridWork measure(const CastView& view);
+  /// Draws it without waiting between, and says what that took.
+  CastSeconds time(const CastView& view);
   /// Of the grid: voxels along each axis, and entries in its lists.
   glm::uvec3 resolution() const;
   std::size_t members() const;
-  /// The name of the device that draws.
-  std::string device() const;
+  const GpuInfo& gpu() const;
 
  private:
   class Device;

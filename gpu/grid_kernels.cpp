@@ -1,6 +1,5 @@
 #include "gpu/grid_kernels.h"
 
-#include "accel/stopwatch.h"
 #include "gpu/kernel_program.h"
 
 namespace rayengine {
@@ -20,6 +19,12 @@ void write_targets(unsigned bits) {
 }
 constexpr unsigned bit(GridKernels::Target target) { return 1u << target; }
 constexpr unsigned all_targets = ~0u;
+
+std::size_t result(const Query& query) {
+  GLuint64 count = 0;
+  glGetQueryObjectui64v(query.id(), GL_QUERY_RESULT, &count);
+  return count;
+}
 
 }  // namespace
 
@@ -82,8 +87,9 @@ void GridKernels::use(const Program& program, const GridTextures& grid, const Gr
   glUniform1i(steps_location, static_cast<GLint>(policy.steps));
 }
 
-/// One pass over the rays in a state. Each reads and writes its own texels once, which the barrier makes defined.
-void GridKernels::draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const {
+/// One pass over the rays in a state, which it counts. Each reads and writes its own texels once, which the barrier
+/// makes defined.
+std::size_t GridKernels::draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const {
   constexpr std::array written{bit(places_target), bit(places_target) | bit(hits_target), all_targets};
   const std::array programs{&traverse_, &intersect_, shade_ ? &*shade_ : nullptr};
   const auto i = static_cast<std::size_t>(state);
@@ -92,50 +98,70 @@ void GridKernels::draw(GridState state, const GridTextures& grid, const GridPoli
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
   write_targets(written[i]);
+  glBeginQuery(GL_SAMPLES_PASSED, counters_[i].id());
   draw_everywhere(depth_of(i));
+  glEndQuery(GL_SAMPLES_PASSED);
   glTextureBarrier();
+  return result(counters_[i]);
 }
 
-/// Makes what kernels left in the texels the rays' depths, and counts those in each state.
-GridCounts GridKernels::update_states() const {
+/// Makes what kernels left in the texels the rays' depths.
+void GridKernels::update_states() const {
   write_targets(0);
   states_.use();
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   draw_everywhere();
+}
+
+GridCounts GridKernels::count_states() const {
+  write_targets(0);
   count_.use();
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
-  GridCounts counts{};
-  const std::size_t states = shaded() ? 3 : 2;
-  for (std::size_t i = 0; i < states; ++i) {
+  for (std::size_t i = 0; i < states(); ++i) {
     glBeginQuery(GL_SAMPLES_PASSED, counters_[i].id());
     draw_everywhere(depth_of(i));
     glEndQuery(GL_SAMPLES_PASSED);
   }
-  for (std::size_t i = 0; i < states; ++i) {
-    GLuint64 count = 0;
-    glGetQueryObjectui64v(counters_[i].id(), GL_QUERY_RESULT, &count);
-    counts[i] = count;
-  }
+  GridCounts counts{};
+  for (std::size_t i = 0; i < states(); ++i) counts[i] = result(counters_[i]);
   return counts;
 }
 
-GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed) {
-  begin(batch, grid);
+/// Runs one kernel after the other, until each has found that no ray waits for it.
+GridWork GridKernels::run_by_turns(const GridTextures& grid, const GridPolicy& policy, bool timed) const {
   GridWork work;
-  GridCounts waiting = update_states();
-  while (const auto state = next_kernel(policy, waiting)) {
-    const auto i = static_cast<std::size_t>(*state);
-    if (timed) glFinish();
-    const Stopwatch watch;
-    draw(*state, grid, policy);
-    ++work.passes[i];
-    work.rays[i] += waiting[i];
-    waiting = update_states();
-    if (timed) glFinish();
-    work.seconds[i] += watch.seconds();
-  }
+  std::size_t idle = 0;
+  for (std::size_t i = 0; idle < states(); i = (i + 1) % states())
+    idle = run_kernel(static_cast<GridState>(i), grid, policy, timed, work) == 0 ? idle + 1 : 0;
+  return work;
+}
+
+GridWork GridKernels::run_by_counts(const GridTextures& grid, const GridPolicy& policy, bool timed) const {
+  GridWork work;
+  while (const auto state = next_kernel(policy, count_states())) run_kernel(*state, grid, policy, timed, work);
+  return work;
+}
+
+std::size_t GridKernels::run_kernel(GridState state, const GridTextures& grid, const GridPolicy& policy, bool timed,
+                                    GridWork& work) const {
+  const auto i = static_cast<std::size_t>(state);
+  if (timed) work.watches[i].start();
+  const std::size_t rays = draw(state, grid, policy);
+  if (rays > 0) update_states();
+  if (timed) work.watches[i].stop();
+  ++work.passes[i];
+  work.rays[i] += rays;
+  return rays;
+}
+
+GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy,
+                          bool timed) const {
+  begin(batch, grid);
+  update_states();
+  const bool turns = policy.rule == GridPolicy::Rule::turns;
+  const GridWork work = turns ? run_by_turns(grid, policy, timed) : run_by_counts(grid, policy, timed);
   end();
   return work;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu/cast_watch.h"
 #include "gpu/device_engine.h"
 #include "gpu/grid_policy.h"
 #include "gpu/grid_textures.h"
@@ -18,12 +19,12 @@ namespace rayengine {
 struct GridWork {
   std::array<std::size_t, grid_state_count> passes{};
   std::array<std::size_t, grid_state_count> rays{};  ///< that the passes were for
-  std::array<double, grid_state_count> seconds{};    ///< with the passes' own upkeep of states; only where timed
+  std::array<CastWatch, grid_state_count> watches;   ///< with the passes' own upkeep of states; only where timed
 };
 
 /// The passes that take a batch through the grid. Each ray's state is a depth; a kernel draws under an EQUAL depth
-/// test, so that only rays in its state are shaded; then states are brought up to date, and occlusion queries count the
-/// rays in each, from which a policy chooses the next kernel.
+/// test, so that only rays in its state are shaded; then states are brought up to date. An occlusion query counts the
+/// rays that the kernel ran for, others those that wait in each state, from which a policy chooses the next kernel.
 class GridKernels {
  public:
   /// What passes write, as their targets in this order; the batch's frame must have those that it needs: the first two,
@@ -49,7 +50,7 @@ class GridKernels {
               Shading shading = {});
 
   /// Runs passes until no ray waits. `timed` waits for the device after each.
-  GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false);
+  GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false) const;
   /// The same in one pass, with a loop over all of a ray's way.
   void run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy);
 
@@ -59,8 +60,14 @@ class GridKernels {
   void begin(const StreamBatch& batch, const GridTextures& grid) const;
   void end() const;
   void use(const Program& program, const GridTextures& grid, const GridPolicy& policy) const;
-  void draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const;
-  GridCounts update_states() const;
+  std::size_t draw(GridState state, const GridTextures& grid, const GridPolicy& policy) const;
+  void update_states() const;
+  GridCounts count_states() const;
+  std::size_t states() const { return shaded() ? 3 : 2; }
+  std::size_t run_kernel(GridState state, const GridTextures& grid, const GridPolicy& policy, bool timed,
+                         GridWork& work) const;
+  GridWork run_by_turns(const GridTextures& grid, const GridPolicy& policy, bool timed) const;
+  GridWork run_by_counts(const GridTextures& grid, const GridPolicy& policy, bool timed) const;
 
   Shading shading_;
   std::vector<std::string> defines_;

@@ -18,15 +18,16 @@ using GridCounts = std::array<std::size_t, grid_state_count>;
 /// kernel should wait until many want it; but those who wait for another kernel wait longer.
 struct GridPolicy {
   enum class Rule {
+    turns,  ///< one kernel after the other; spares the counting
     share,  ///< rays traverse until a share of those under way waits for another kernel, which then has its turn
     most,   ///< the kernel that most rays wait for
   };
-  Rule rule = Rule::share;
+  Rule rule = Rule::turns;
   double share = 0.5;          ///< of the rays under way; 0: as soon as any wait, 1: when all do
   std::uint32_t steps = 1024;  ///< voxels that a ray crosses in one traverse pass, at most
 };
 
-/// Nothing when no ray waits for anything.
+/// Nothing when no ray waits for anything. Not for turns.
 std::optional<GridState> next_kernel(const GridPolicy& policy, const GridCounts& waiting);
 
 }  // namespace rayengine

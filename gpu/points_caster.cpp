@@ -1,8 +1,5 @@
 #include "gpu/points_caster.h"
 
-#include <ctime>
-
-#include "accel/stopwatch.h"
 #include "accel/tracer.h"
 #include "gpu/await.h"
 #include "gpu/cast_method.h"
@@ -91,10 +88,11 @@ namespace {
 
 template <class Work>
 CastSeconds timed(const Work& work) {
-  const Stopwatch watch;
-  const std::clock_t processor = std::clock();
+  CastWatch watch;
+  watch.start();
   work();
-  return {watch.seconds(), static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
+  watch.stop();
+  return watch.seconds();
 }
 
 }  // namespace

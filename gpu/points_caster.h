@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "accel/geometry.h"
+#include "gpu/cast_watch.h"
 #include "gpu/context.h"
 #include "gpu/ray_caster.h"
 
@@ -31,12 +32,6 @@ struct PointsOptions {
   int reflections = 0;  ///< how many may follow each other
   double room = 0;      ///< rays that vertex buffers hold, for each pixel; 0 for all that can come
   int device = -1;      ///< an EGL device by its number; the best when negative
-};
-
-/// How long a picture took: on the clock, and of the processor, summed over its cores (of a renderer in software, that
-/// is the whole work).
-struct CastSeconds {
-  double elapsed = 0, processor = 0;
 };
 
 /// Whole pictures by the points tracer's pipeline. Source: Ralovich, Magdics, "Recursive Ray Tracing in Geometry

@@ -13,7 +13,7 @@ struct PurcellRow {
   unsigned resolution = 0;  ///< voxels along the longest axis
   std::string state;        ///< traverse, intersect or shade
   std::size_t passes = 0;
-  double milliseconds = 0;  ///< median
+  double milliseconds = 0;  ///< in the fastest run: of the processor where the GPU is software, else elapsed
 };
 
 /// What a way of choosing the next kernel costs in one picture.
@@ -29,12 +29,13 @@ struct PurcellFigures {
   std::vector<PurcellPolicyRow> policies;
   unsigned usual_resolution = 0;  ///< which the policies were measured at
   std::string device;
+  bool software = false;  ///< it is the processor
 };
 
 struct PurcellOptions {
   int gpu = -1;  ///< an EGL device by its number; the best when negative
-  int side = 512;
-  int runs = 5;
+  glm::ivec2 size{256, 256};
+  int runs = 3;
   std::function<void(double share)> progress;
 };
 
@@ -42,8 +43,5 @@ struct PurcellOptions {
 /// picture with shadows and one reflection by the kernels of the grid tracer; passes and time in each state against the
 /// grid's resolution, and ways of choosing the next kernel. Throws Error without a GPU.
 PurcellFigures purcell(const Scene& scene, const PurcellOptions& options = {});
-
-/// A torus knot of 1,012 triangles in a Cornell box of 12.
-Scene cornell_knot();
 
 }  // namespace rayengine

@@ -138,6 +138,8 @@ Scene figure_in_box() {
   return seen_from_inside(lit(builder));
 }
 
+}  // namespace
+
 Scene cornell_knot() {
   GeometryBuilder builder;
   add_room(builder);
@@ -145,8 +147,6 @@ Scene cornell_knot() {
   builder.add(knot(), gold, Affine::translate({wall / 2, wall / 2, 2.3}) * Affine::rotate({1, 0, 0}, 62));
   return lit(builder);
 }
-
-}  // namespace
 
 std::vector<NamedScene> ralovich_scenes() {
   return {{"room", room()},

@@ -13,7 +13,8 @@ struct Paper {
   std::string_view name;
   int (*run)(const PaperOptions&);
 };
-constexpr std::array papers{Paper{"carr", run_carr}, Paper{"ralovich", run_ralovich}, Paper{"szecsi", run_szecsi}};
+constexpr std::array papers{Paper{"carr", run_carr}, Paper{"purcell", run_purcell}, Paper{"ralovich", run_ralovich},
+                            Paper{"szecsi", run_szecsi}};
 
 std::vector<std::string> names() {
   std::vector<std::string> result;
@@ -45,6 +46,9 @@ void add_paper(CLI::App& app, Action& action) {
       "  rayengine paper ralovich bunny.ply --size 256x256 -o ralovich\n\n"
       "carr: processor alone, with a GPU read back synchronously and asynchronously, and with an infinitely fast one;\n"
       "  on 8,000 made balls and a made mesh of 200,000 triangles unless scenes are named.\n"
+      "purcell: passes and time in the grid tracer's states against its resolution, and ways to choose the next "
+      "kernel;\n"
+      "  a picture of 256x256 of the knot in a Cornell box, unless a size or a scene is named.\n"
       "ralovich: rays as points through geometry shaders, beside a fragment shader; on made scenes of the paper's "
       "sizes,\n"
       "  and the meshes that are named.\n"

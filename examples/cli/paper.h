@@ -19,6 +19,7 @@ struct PaperOptions {
 
 // Each repeats one paper's experiment into the folder `output`; the result is the exit code.
 int run_carr(const PaperOptions& options);
+int run_purcell(const PaperOptions& options);
 int run_ralovich(const PaperOptions& options);
 int run_szecsi(const PaperOptions& options);
 

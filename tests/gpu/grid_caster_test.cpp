@@ -109,7 +109,7 @@ TEST(GridCaster, SaysWhatItsKernelsDid) {
   const auto rays = static_cast<std::size_t>(scene.camera.size.x * scene.camera.size.y);
   for (std::size_t i = 0; i < grid_state_count; ++i) {
     EXPECT_GT(work.passes[i], 0u);
-    EXPECT_GT(work.seconds[i], 0);
+    EXPECT_GT(work.watches[i].seconds().elapsed, 0);
   }
   EXPECT_GT(work.rays[0], rays);
   EXPECT_GT(work.rays[2], rays) << "eye rays, and those to the light";

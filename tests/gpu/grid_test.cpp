@@ -62,8 +62,8 @@ void expect_the_same(const GridTracerOptions& options) {
 TEST(Grid, OnePassGivesTheAnswersOfMany) { expect_the_same({.single_pass = true}); }
 
 TEST(Grid, PoliciesGiveTheSameAnswers) {
-  expect_the_same({.policy = {.share = 0, .steps = 1}});
-  expect_the_same({.policy = {.share = 1, .steps = 3}});
+  expect_the_same({.policy = {.rule = GridPolicy::Rule::share, .share = 0, .steps = 1}});
+  expect_the_same({.policy = {.rule = GridPolicy::Rule::share, .share = 1, .steps = 3}});
   expect_the_same({.policy = {.rule = GridPolicy::Rule::most, .steps = 2}});
 }
 

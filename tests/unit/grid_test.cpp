@@ -236,12 +236,13 @@ TEST(Grid, RefusesListsThatAreTooLong) {
 }
 
 TEST(GridCounts, AreNearCubesAndOneWhereItIsThin) {
-  EXPECT_EQ(grid_counts({1, 1, 1}, 250), glm::uvec3(10));
-  EXPECT_EQ(grid_counts({2, 1, 1}, 500), glm::uvec3(20, 10, 10));
-  EXPECT_EQ(grid_counts({1, 1, 0}, 100), glm::uvec3(20, 20, 1));
-  EXPECT_EQ(grid_counts({1, 0, 0}, 25), glm::uvec3(100, 1, 1));
-  EXPECT_EQ(grid_counts({0, 0, 0}, 25), glm::uvec3(1));
-  EXPECT_EQ(grid_counts({1, 0, 0}, 1000), glm::uvec3(1024, 1, 1));
+  const auto counts = [](const glm::dvec3& size, std::size_t n) { return grid_counts(size, n, {.density = 4}); };
+  EXPECT_EQ(counts({1, 1, 1}, 250), glm::uvec3(10));
+  EXPECT_EQ(counts({2, 1, 1}, 500), glm::uvec3(20, 10, 10));
+  EXPECT_EQ(counts({1, 1, 0}, 100), glm::uvec3(20, 20, 1));
+  EXPECT_EQ(counts({1, 0, 0}, 25), glm::uvec3(100, 1, 1));
+  EXPECT_EQ(counts({0, 0, 0}, 25), glm::uvec3(1));
+  EXPECT_EQ(counts({1, 0, 0}, 1000), glm::uvec3(1024, 1, 1));
 }
 
 TEST(VoxelOverlap, TellsTrianglesApart) {
