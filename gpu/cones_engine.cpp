@@ -2,6 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
 #include <string>
 
 #include "gpu/batches.h"
@@ -18,6 +21,26 @@ GLsizei side_of(int tile) {
     throw Error("tiles of " + std::to_string(tile) + " rays a side cannot be: give 1 to " +
                 std::to_string(rays_a_side));
   return rays_a_side / tile * tile;
+}
+
+/// Bits of a ray's key for each of its six numbers.
+constexpr unsigned key_bits = 8;
+
+/// A number of [-range, range) in key_bits; NaN counts as the least.
+std::uint32_t digits(float a, float range) {
+  constexpr float steps = 1 << key_bits;
+  return static_cast<std::uint32_t>(std::min(std::max(0.f, (a / range + 1) * (steps / 2)), steps - 1));
+}
+
+/// Rays that are near each other along this curve (Morton's, through origins and directions) have most in common.
+std::uint64_t likeness(const FrameRay& ray) {
+  const glm::vec3 d = glm::normalize(ray.direction);
+  const std::array all{digits(d.x, 1),          digits(ray.origin.x, 4), digits(d.y, 1),
+                       digits(ray.origin.y, 4), digits(d.z, 1),          digits(ray.origin.z, 4)};
+  std::uint64_t key = 0;
+  for (unsigned bit = key_bits; bit-- > 0;)
+    for (const std::uint32_t digit : all) key = key << 1 | (digit >> bit & 1);
+  return key;
 }
 
 }  // namespace
@@ -41,11 +64,20 @@ ConesEngine::ConesEngine(std::shared_ptr<const Geometry> geometry, const ConesOp
   context_.check_errors("the upload of the scene");
 }
 
+/// Tiles want rays that are alike, in whatever order they were asked.
+void ConesEngine::take_places(std::span<const Traveller> travellers) {
+  order_.resize(travellers.size());
+  tbb::parallel_for(std::size_t{0}, travellers.size(), [&](std::size_t i) {
+    order_[i] = {likeness(travellers[i].frame), static_cast<std::uint32_t>(i)};
+  });
+  radix_sort(order_, spare_, 6 * key_bits);
+}
+
 /// What is left of the last row of tiles holds no rays.
 void ConesEngine::write(std::span<const Traveller> travellers) {
   tbb::parallel_for(std::size_t{0}, batch_.rays_in_blocks(travellers.size()), [&](std::size_t i) {
     const std::size_t place = batch_.place(i);
-    const Traveller& t = i < travellers.size() ? travellers[i] : Traveller();
+    const Traveller& t = i < travellers.size() ? travellers[order_[i].index] : Traveller();
     batch_.origins()[place] = {t.frame.origin, t.frame.tmin};
     batch_.directions()[place] = {t.frame.direction, t.frame.tmax};
     batch_.entries()[place] = {t.floor_rank, 0, 0, 0};
@@ -68,6 +100,7 @@ void ConesEngine::test_unbounded() const {
 
 void ConesEngine::cast(std::span<Traveller> travellers) {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  take_places(travellers);
   write(travellers);
   const glm::ivec2 extent(side_, batch_.rows());
   pass_.build(extent);
@@ -81,7 +114,8 @@ void ConesEngine::cast(std::span<Traveller> travellers) {
   batch_.await(context_);
   for (std::size_t i = 0; i < travellers.size(); ++i) {
     const StreamBatch::Answer& answer = batch_.answers()[batch_.place(i)];
-    travellers[i].best_t = answer.t, travellers[i].best_rank = answer.rank;
+    Traveller& t = travellers[order_[i].index];
+    t.best_t = answer.t, t.best_rank = answer.rank;
   }
 }
 

@@ -4,6 +4,7 @@
 #include "gpu/cones_tracer.h"
 #include "gpu/device_engine.h"
 #include "gpu/stream_batch.h"
+#include "gpu/stream_order.h"
 
 namespace rayengine {
 
@@ -19,6 +20,7 @@ class ConesEngine : public DeviceEngine {
   std::size_t bytes() const override { return scene_.bytes(); }
 
  private:
+  void take_places(std::span<const Traveller> travellers);
   void write(std::span<const Traveller> travellers);
   void cast(std::span<Traveller> travellers);
   void test_unbounded() const;
@@ -30,6 +32,7 @@ class ConesEngine : public DeviceEngine {
   std::vector<Program> unbounded_;  // by run
   VertexArray vertices_ = make_vertex_array();
   StreamBatch batch_;
+  std::vector<SortKey> order_, spare_;  // who lies where in the batch
 };
 
 }  // namespace rayengine
