@@ -1,11 +1,19 @@
 #include "gpu/layered_target.h"
 
 #include <array>
+#include <string>
+
+#include "accel/tracer.h"
 
 namespace rayengine {
 namespace {
 
 GLuint create_layers(GLsizei width, GLsizei height, GLsizei count) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
+  if (count > most)
+    throw Error("the lights and reflections need " + std::to_string(count) + " layers, and the GPU has " +
+                std::to_string(most) + ": allow fewer reflections, or use --tracer embree");
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
   glTextureStorage3D(id, 1, GL_RGBA32F, width, height, count);

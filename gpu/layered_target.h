@@ -10,6 +10,7 @@ namespace rayengine {
 /// Float colours in several targets, each with a layer for every generation of rays, and their sum.
 class LayeredTarget {
  public:
+  /// Throws Error when there are more layers than the device has.
   LayeredTarget(GLsizei width, GLsizei height, GLsizei targets, GLsizei generations);
 
   /// Clears all layers and makes them what is drawn to, additively but for the alpha of what is drawn:

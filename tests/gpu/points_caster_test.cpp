@@ -179,6 +179,7 @@ TEST(PointsCaster, WhatItCannotHoldIsRefused) {
   scene.camera.size = {16000, 16000};
   EXPECT_NE(complaint(scene, {}).find("need a vertex buffer of 8192000000 bytes"), std::string::npos);
   scene = corner();
+  EXPECT_NE(complaint(scene, {.reflections = 1000}).find("need 3003 layers"), std::string::npos);
   scene.lights.resize(8);
   EXPECT_NE(complaint(scene, {}).find("8 lights, and there are render targets for 7"), std::string::npos);
   scene = corner();
