@@ -13,6 +13,7 @@ std::vector<std::string> names_of(Aov aov) {
     case Aov::primitive: return {"primitive"};
     case Aov::position: return {"P.X", "P.Y", "P.Z"};
     case Aov::error: return {"error"};
+    case Aov::status: return {"status"};
   }
   return {};
 }
@@ -48,6 +49,7 @@ void write_aovs(std::span<const Aov> aovs, const Geometry& geometry, const Ray& 
       case Aov::primitive: out = put(out, id_value(hit.primitive)); break;
       case Aov::position: out = put(out, surface.position); break;
       case Aov::error: out = put(out, hit.error); break;
+      case Aov::status: out = put(out, static_cast<double>(hit.status)); break;
     }
 }
 

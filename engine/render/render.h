@@ -17,7 +17,7 @@ enum class Shading {
 };
 
 /// Arbitrary output variables beside the colour.
-enum class Aov { depth, normal, object, primitive, position, error };
+enum class Aov { depth, normal, object, primitive, position, error, status };
 
 struct RenderOptions {
   int depth = 5;  ///< reflections and refractions that may follow each other

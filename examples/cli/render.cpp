@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::pair<std::string, Aov>> aov_names = {{"depth", Aov::depth},       {"normal", Aov::normal},
-                                                            {"object", Aov::object},     {"primitive", Aov::primitive},
-                                                            {"position", Aov::position}, {"error", Aov::error}};
+const std::vector<std::pair<std::string, Aov>> aov_names = {
+    {"depth", Aov::depth},       {"normal", Aov::normal}, {"object", Aov::object}, {"primitive", Aov::primitive},
+    {"position", Aov::position}, {"error", Aov::error},   {"status", Aov::status}};
 constexpr const char* ray_kinds[] = {"primary", "shadow", "reflected", "refracted"};
 
 struct Options {
@@ -41,7 +41,7 @@ Aov to_aov(const std::string& name) {
   for (const auto& [known, aov] : aov_names)
     if (name == known) return aov;
   throw CLI::ValidationError(
-      "--aov", "there is no output '" + name + "'; choose among depth,normal,object,primitive,position,error");
+      "--aov", "there is no output '" + name + "'; choose among depth,normal,object,primitive,position,error,status");
 }
 
 Shading to_shading(const std::string& name) {
@@ -193,7 +193,7 @@ void add_picture_options(CLI::App* app, Options& o) {
          [&](const std::string& list) {
            for (const std::string& name : split(list)) o.render.aovs.push_back(to_aov(name));
          },
-         "More channels, for .exr: depth,normal,object,primitive,position,error")
+         "More channels, for .exr: depth,normal,object,primitive,position,error,status")
       ->type_name("LIST");
 }
 

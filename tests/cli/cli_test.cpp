@@ -96,7 +96,7 @@ TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
   expect_failure(2, "render scene.nff --threads -1", "--threads");
   for (const char* size : {"0x0", "100000x100000", "12", "x", "12x", "12xab", "12x-3", "1e3x5", "99999999999x1"})
     expect_failure(2, std::string("render scene.nff --size ") + size, "WIDTHxHEIGHT");
-  expect_failure(2, "render scene.nff -o a.exr --aov depth,colour", "depth,normal,object,primitive,position,error");
+  expect_failure(2, "render scene.nff -o a.exr --aov depth,colour", "depth,normal,object,primitive,position,error,status");
   expect_failure(2, "render scene.nff -o a.png --aov depth", ".exr");
   expect_failure(2, "trace scene.nff", "--rays");
   expect_failure(2, "trace scene.nff --rays a.npy -o b.npy --query some", "--query");

@@ -163,6 +163,22 @@ TEST(RenderAovs, AreThoseOfThePixelsCentre) {
   }
 }
 
+/// Down on the edge that the halves of a square share, and beside it.
+TEST(RenderAovs, StatusShowsWhereRaysWereHard) {
+  GeometryBuilder builder;
+  builder.add(Mesh{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 3}}});
+  const auto status = [&, geometry = builder.build()](const glm::dvec3& at) {
+    Scene scene;
+    scene.geometry = geometry;
+    scene.camera = one_ray(at + glm::dvec3(0, 0, 2), at);
+    scene.camera.up = {0, 1, 0};
+    return render_with("reference", scene, {.aovs = {Aov::status}}).image.pixel(0, 0)[4];
+  };
+  EXPECT_EQ(status({0.5, 0.5, 0}), status_hit | status_tie);
+  EXPECT_EQ(status({0.5, 0.25, 0}), status_hit);
+  EXPECT_EQ(status({5, 0, 0}), status_miss);
+}
+
 TEST(RenderAovs, AMissIsInfinitelyFarAndHasNoIds) {
   GeometryBuilder builder;
   builder.add(unit_sphere);
