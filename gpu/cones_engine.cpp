@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
 
@@ -14,13 +15,17 @@
 namespace rayengine {
 namespace {
 
-constexpr GLsizei rays_a_side = 256;
+constexpr GLsizei most_a_side = 256;
 
-GLsizei side_of(int tile) {
-  if (tile < 1 || tile > rays_a_side)
+/// Rays along a side of a batch: so few that a batch is done in seconds, cones or no cones; drivers end what takes
+/// longer.
+GLsizei side_of(int tile, std::size_t primitives, const GpuInfo& gpu) {
+  if (tile < 1 || tile > most_a_side)
     throw Error("tiles of " + std::to_string(tile) + " rays a side cannot be: give 1 to " +
-                std::to_string(rays_a_side));
-  return rays_a_side / tile * tile;
+                std::to_string(most_a_side));
+  const double most_tests = gpu.software ? 0x1p28 : 0x1p33;
+  const double side = std::sqrt(most_tests / static_cast<double>(std::max<std::size_t>(primitives, 1)));
+  return std::max(static_cast<int>(std::min<double>(most_a_side, side)) / tile, 1) * tile;
 }
 
 /// Bits of a ray's key for each of its six numbers.
@@ -47,8 +52,8 @@ std::uint64_t likeness(const FrameRay& ray) {
 
 ConesEngine::ConesEngine(std::shared_ptr<const Geometry> geometry, const ConesOptions& options)
     : context_(options.device),
-      side_(side_of(options.tile)),
       scene_(std::move(geometry), context_.info()),
+      side_(side_of(options.tile, scene_.list.triangles.size() + scene_.list.quadrics.size(), context_.info())),
       pass_(scene_, {side_, side_}, options.tile),
       batch_(side_, options.tile) {
   require_usable(context_);

@@ -26,8 +26,8 @@ class ConesEngine : public DeviceEngine {
   void test_unbounded() const;
 
   Context context_;
-  GLsizei side_;
   ConesScene scene_;
+  GLsizei side_;
   ConesPass pass_;
   std::vector<Program> unbounded_;  // by run
   VertexArray vertices_ = make_vertex_array();

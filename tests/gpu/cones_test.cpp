@@ -168,6 +168,28 @@ TEST(Cones, PreferTheLowestIdsAtTheSameDistance) {
   }
 }
 
+/// No batch may take so long that a driver would end it.
+TEST(Cones, TakeFewerRaysAtOnceThroughLargeScenes) {
+  Mesh mesh;
+  for (unsigned i = 0; i < 40000; ++i) {
+    const double x = i % 200, y = i / 200;
+    for (const glm::dvec3& corner : {glm::dvec3{x, y, 0}, glm::dvec3{x + 1, y, 0}, glm::dvec3{x, y + 1, 0}})
+      mesh.positions.push_back(corner);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  GeometryBuilder builder;
+  builder.add(mesh);
+  const auto geometry = builder.build();
+  const auto cones = make_cones_tracer(geometry, Precision::robust);
+  EXPECT_EQ(make_cones_tracer(unit_box(), Precision::robust)->limits().batch, 65536u);
+  EXPECT_LT(cones->limits().batch, 65536u);
+  std::vector<Ray> rays;
+  for (unsigned i = 0; i < 40000; i += 97) rays.push_back({{i % 200 + .25, i / 200 + .25, 9}, 0, {0, 0, -1}, infinity});
+  std::vector<Hit> hits(rays.size());
+  cones->closest(rays, hits, RayClass::primary);
+  for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(hits[i].primitive, 97 * i);
+}
+
 TEST(Cones, RefuseTilesThatCannotBe) {
   for (const int size : {0, -16, 257, 100000})
     EXPECT_THROW(make_cones_tracer(unit_box(), Precision::robust, {.tile = size}), Error) << size;
