@@ -28,6 +28,14 @@ std::shared_ptr<const Geometry> checked(std::shared_ptr<const Geometry> geometry
   return geometry;
 }
 
+const GlassOptions& checked(const GlassOptions& options) {
+  if (options.tile < 1 || options.path_length < 0 || options.stride < 1)
+    throw Error("glass cannot be cast in tiles of " + std::to_string(options.tile) + ", paths of " +
+                std::to_string(options.path_length) + " rays and one pass in " + std::to_string(options.stride) +
+                ": give at least 1, 0 and 1");
+  return options;
+}
+
 PrimitiveRef primitive(const Geometry& geometry, std::uint32_t rank) {
   const Ids ids = ids_of_rank(geometry, rank);
   return resolve(geometry, ids.object, ids.primitive);
@@ -86,7 +94,7 @@ class GlassCaster::Device {
  public:
   Device(const std::shared_ptr<const Geometry>& geometry, std::span<const float> indices,
          const CastEnvironment& environment, const GlassOptions& options)
-      : options_(options),
+      : options_(checked(options)),
         context_(options.device),
         scene_(checked(geometry), context_.info()),
         indices_(upload_indices(*geometry, indices)),

@@ -158,6 +158,9 @@ TEST(GlassCaster, RefusesWhatItCannotHold) {
   EXPECT_THROW(GlassCaster(triangle, {&index, 1}, sky()), Error);
   const std::array indices{1.5f, 1.5f, 1.5f};
   EXPECT_THROW(GlassCaster(triangle, indices, {4, 4, {}}), Error);
+  for (const GlassOptions& wrong :
+       {GlassOptions{.tile = 0}, GlassOptions{.path_length = -1}, GlassOptions{.stride = 0}})
+    EXPECT_THROW(GlassCaster(triangle, indices, sky(), wrong), Error);
   CastView view = cast_view(Camera{});
   view.width = 1 << 20;
   EXPECT_THROW(GlassCaster(triangle, indices, sky()).cast(view), Error);
