@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <map>
 
@@ -28,8 +30,6 @@ glm::ivec2 size_of(const PaperOptions& o) { return o.size.value_or(PurcellOption
 
 PurcellFigures measure(const PaperOptions& o) {
   const auto scenes = load_scenes(o);
-  if (scenes.size() > 1)
-    throw Error("paper purcell measures one scene, and " + std::to_string(scenes.size()) + " were named");
   Progress progress("paper purcell", !o.common.quiet());
   return purcell(scenes.empty() ? cornell_knot() : scenes[0].second,
                  {.gpu = o.common.gpu, .size = size_of(o), .progress = [&](double share) { progress.update(share); }});
@@ -131,6 +131,7 @@ std::string page(const PurcellFigures& figures, const glm::ivec2& size, bool cha
 }  // namespace
 
 int run_purcell(const PaperOptions& o) {
+  if (o.scenes.size() > 1) throw CLI::ValidationError("SCENE", "paper purcell measures one scene: name no more");
   prepare_folder(o, {"purcell.csv", "purcell-policies.csv", "purcell.md"});
   const PurcellFigures figures = measure(o);
   write_text(o.output / "purcell.csv", csv(figures.rows));

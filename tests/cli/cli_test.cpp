@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -450,6 +451,34 @@ TEST_F(Cli, PaperCarrWritesItsFourRows) {
   EXPECT_TRUE(std::filesystem::exists(file("carr/carr.md")));
   const bool drawn = std::filesystem::exists(file("carr/carr.svg"));
   EXPECT_NE(drawn, outcome.err.find("gnuplot is not installed") != std::string::npos);
+}
+
+TEST_F(Cli, PaperPurcellWritesPassesAndTimeByState) {
+  const test::Outcome outcome = run("paper purcell scene.nff --size 16x16 -o purcell");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::ifstream csv(file("purcell/purcell.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "resolution,state,passes,milliseconds");
+  std::map<std::string, int> rows;
+  std::map<int, int> traverse_passes;  // by resolution
+  for (int resolution, passes; std::getline(csv, line);) {
+    char state[16] = {};
+    double milliseconds = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%15[a-z],%d,%lf", &resolution, state, &passes, &milliseconds), 4) << line;
+    EXPECT_GT(passes, 0);
+    EXPECT_GT(milliseconds, 0);
+    ++rows[state];
+    if (state == std::string("traverse")) traverse_passes[resolution] = passes;
+  }
+  EXPECT_EQ(rows, (std::map<std::string, int>{{"traverse", 6}, {"intersect", 6}, {"shade", 6}}));
+  EXPECT_GT(traverse_passes.rbegin()->second, 4 * traverse_passes.begin()->second) << "they go with the resolution";
+  EXPECT_TRUE(fs::exists(file("purcell/purcell-policies.csv")));
+  EXPECT_TRUE(fs::exists(file("purcell/purcell.md")));
+}
+
+TEST_F(Cli, PaperPurcellTakesOneScene) {
+  expect_failure(2, "paper purcell scene.nff scene.nff -o purcell", "measures one scene");
 }
 
 TEST_F(Cli, PaperSzecsiHasItsOwnScenesAndSizes) {
