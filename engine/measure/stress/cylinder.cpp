@@ -86,7 +86,7 @@ Cases long_body_cases(std::size_t rays, std::uint64_t seed) {
         {"cylinder across the axes", turned(3) * Affine::scale({1, 1, length})}};
     for (const auto& [name, map] : bodies) {
       Case c{.variant = name + number(", length = ", length), .geometry = alone(QuadricShape{.type = cylinder}, map)};
-      c.rays = make_rays(rays, seed, [&](Random& random, std::size_t) {
+      c.rays = make_rays(rays, seed, [map = map](Random& random, std::size_t) {
         const double z = random.between(.01, .99), aside = random.between(-1.2, 1.2);
         const glm::dvec3 from = map.point({aside, 10, z}), to = map.point({aside, 0, z});
         return through(from, to);

@@ -95,7 +95,7 @@ Cases sliver_cases(std::size_t rays, std::uint64_t seed) {
     const Mesh needle = mapped(bipyramid(5, 1 / aspect, 1), turned(1));
     const Mesh sliver = mapped(bipyramid(5, 1, 1 / aspect), turned(1));
     for (const auto& [aim, name] : aims) {
-      const auto add = [&](const char* kind, const Mesh& mesh) {
+      const auto add = [&, aim = aim, name = name](const char* kind, const Mesh& mesh) {
         cases.push_back(from_inside(kind + number(", aspect = ", aspect) + ", " + name, mesh, glm::dvec3(0),
                                     .1 / aspect, aim, rays, seed));
       };
