@@ -48,6 +48,9 @@ class Tracer {
   virtual double build_seconds() const = 0;
   virtual std::size_t bytes() const = 0;
 
+  /// Rays of all queries so far that had to be decided in more than the tracer's own arithmetic.
+  virtual std::uint64_t resolved_rays() const { return 0; }
+
   /// The nearest hit of each ray. Equal t: the lowest object id, then the lowest primitive id.
   virtual void closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) = 0;
 

@@ -1,5 +1,6 @@
 #include "cpu/bvh_certified.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "accel/stopwatch.h"
@@ -33,6 +34,7 @@ class CertifiedBvh final : public Tracer {
   Precision precision() const override { return Precision::certified; }
   double build_seconds() const override { return build_seconds_; }
   std::size_t bytes() const override { return scene_.bytes() + instances_.bytes(); }
+  std::uint64_t resolved_rays() const override { return resolved_; }
   /// What starts within the bounds of its own surface cannot be told in double.
   Limits limits() const override { return {.clearance_roundoff = 0x1p-46}; }
 
@@ -57,6 +59,7 @@ class CertifiedBvh final : public Tracer {
   BvhInstances instances_;
   reference::ClosedMeshes closed_{scene_.geometry()};
   double build_seconds_;
+  mutable std::atomic<std::uint64_t> resolved_ = 0;
 };
 
 /// Whether that is what was found for sure, but for its place among others.
@@ -70,6 +73,7 @@ bool is(const BvhFound& found, const reference::Candidate& exact) {
 /// Of a hit that is sure in itself t is as if no other had come near: so answers do not depend on what was looked at.
 Hit CertifiedBvh::exact_closest(const Ray& ray, double end) const {
   if (!is_valid(ray)) return {.status = status_invalid};
+  ++resolved_;
   reference::Closest sink(ray);
   const std::vector<BvhFound> possible = trace_exactly(scene_, instances_, ray, end, sink);
   Hit hit = sink.hit();
@@ -87,6 +91,7 @@ Hit CertifiedBvh::exact_closest(const Ray& ray, double end) const {
 
 std::uint32_t CertifiedBvh::exact_any(const Ray& ray) const {
   if (!is_valid(ray)) return status_invalid;
+  ++resolved_;
   reference::Any sink(ray);
   trace_exactly(scene_, instances_, ray, infinity, sink);
   return sink.status();
@@ -94,6 +99,7 @@ std::uint32_t CertifiedBvh::exact_any(const Ray& ray) const {
 
 std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
   if (!is_valid(ray)) return {};
+  ++resolved_;
   reference::All sink(ray, closed_);
   trace_exactly(scene_, instances_, ray, infinity, sink);
   std::vector<Hit> hits = sink.hits();

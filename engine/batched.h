@@ -15,6 +15,7 @@ class Batched : public Tracer {
   Limits limits() const override { return tracer_.limits(); }
   double build_seconds() const override { return tracer_.build_seconds(); }
   std::size_t bytes() const override { return tracer_.bytes(); }
+  std::uint64_t resolved_rays() const override { return tracer_.resolved_rays(); }
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) override {
     rayengine::closest(tracer_, rays, hits, ray_class, done_);

@@ -22,6 +22,7 @@ class Certifying final : public Tracer {
   Precision precision() const override { return Precision::certified; }
   double build_seconds() const override { return proposer_->build_seconds() + certifier_->build_seconds(); }
   std::size_t bytes() const override { return proposer_->bytes() + certifier_->bytes(); }
+  std::uint64_t resolved_rays() const override { return certifier_->resolved_rays(); }
   Limits limits() const override {
     Limits limits = certifier_->limits();
     const Limits from = proposer_->limits();

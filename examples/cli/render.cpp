@@ -102,6 +102,7 @@ Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const
           {"rays_by_kind", rays},
           {"invalid_rays", stats.invalid_rays},
           {"photon_rays", stats.photon_rays},
+          {"resolved_rays", tracer.resolved_rays()},
           {"mrays_per_s", static_cast<double>(total(stats)) / seconds.render / 1e6},
           {"load_s", seconds.load},
           {"build_s", seconds.build},
@@ -131,9 +132,9 @@ void say(const Options& o, const Scene& scene, const Tracer& tracer, const Rende
             << fmt::format("memory: geometry {}, tracer {}, peak {}\n", bytes_text(scene.geometry->bytes()),
                            bytes_text(tracer.bytes()), bytes_text(peak_memory()));
   if (o.common.verbosity == Verbosity::verbose)
-    std::cerr << fmt::format("thread time: tracer {}, shading {}; invalid rays {}\n",
+    std::cerr << fmt::format("thread time: tracer {}, shading {}; invalid rays {}, resolved beyond double {}\n",
                              seconds_text(stats.tracer_seconds), seconds_text(stats.shading_seconds),
-                             stats.invalid_rays);
+                             stats.invalid_rays, tracer.resolved_rays());
   if (const std::string text = scheduler_text(tracer); o.common.verbosity == Verbosity::verbose && !text.empty())
     std::cerr << text << '\n';
 }

@@ -100,6 +100,14 @@ TEST_P(Certified, OnRandomRays) { expect_exact(random_rays(geometry().bounds, 20
 
 TEST_P(Certified, OnAimedRays) { expect_exact(aimed_rays(geometry(), 2000)); }
 
+TEST_P(Certified, FewRandomRaysAreResolved) {
+  const auto tested = tracer();
+  const auto rays = random_rays(geometry().bounds, 2000, 16);
+  std::vector<Hit> hits(rays.size());
+  tested->closest(rays, hits, RayClass::bounce);
+  EXPECT_LE(tested->resolved_rays(), 2u);
+}
+
 TEST_P(Certified, OnRaysFromAfar) {
   const double size = geometry().bounds.finite() ? glm::length(geometry().bounds.size()) : 10;
   for (const double distance : {1e2, 1e4, 1e7}) {
