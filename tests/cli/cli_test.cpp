@@ -420,7 +420,7 @@ TEST_F(CliInfo, NamesTracersAndTheirPrecisions) {
   EXPECT_TRUE(info["device"].contains("isa"));
   const auto embree = std::ranges::find_if(info["tracers"], [](const json& t) { return t["name"] == "embree"; });
   ASSERT_NE(embree, info["tracers"].end());
-  EXPECT_EQ((*embree)["precisions"], json({"fast", "robust"}));
+  EXPECT_EQ((*embree)["precisions"], json({"fast", "robust", "certified"}));
 }
 
 TEST_F(Cli, FramesTurnTheCamera) {
