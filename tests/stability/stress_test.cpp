@@ -37,6 +37,14 @@ TEST(Stress, TracersOnTheProcessorKeepTheirLimits) {
   for (int number = 1; number <= 34; ++number) EXPECT_TRUE(seen.contains(number)) << "row " << number;
 }
 
+TEST(Stress, CertifiedDecidesAMillionRaysRight) {
+  const StressReport report = stress({.tracers = {"bvh"}, .precisions = {Precision::certified}, .rays = 1'000'000});
+  expect_good(report);
+  std::uint64_t rays = 0;
+  for (const StressRow& row : report.rows) rays += row.errors.rays;
+  EXPECT_GT(rays, 900'000u);
+}
+
 /// Every tracer is made anew for each case, which takes a GPU's ten times as long as the rays: some families have to
 /// do.
 TEST(Stress, TracersOnTheGpuKeepTheirLimits) {
