@@ -1,6 +1,7 @@
 #include "accel/treelets.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "accel/tracer.h"
 
@@ -122,6 +123,20 @@ Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint3
   }
   result.unbounded = append_treelet(result, primitives, unbounded);
   return result;
+}
+
+Treelets list_all(const Geometry& g) {
+  Treelets list;
+  list.frame = LocalFrame(frame_bounds(g));
+  list.triangles.resize(g.triangles.size());
+  list.quadrics.resize(g.quadrics.size());
+  std::iota(list.triangles.begin(), list.triangles.end(), 0u);
+  std::iota(list.quadrics.begin(), list.quadrics.end(), 0u);
+  std::stable_sort(list.quadrics.begin(), list.quadrics.end(),
+                   [&](auto a, auto b) { return g.quadrics[a].type < g.quadrics[b].type; });
+  list.unbounded.triangle_count = static_cast<std::uint32_t>(list.triangles.size());
+  list.unbounded.quadric_count = static_cast<std::uint32_t>(list.quadrics.size());
+  return list;
 }
 
 }  // namespace rayengine

@@ -60,4 +60,7 @@ Treelet append_treelet(Treelets& to, std::span<const TreeletPrimitive> primitive
 /// `about` where it is not empty. Throws Error when K is 0, or there is no memory.
 Treelets build_treelets(std::span<const TreeletPrimitive> primitives, std::uint32_t K, const Box& about = {});
 
+/// No structure: all primitives in `unbounded`, triangles in their order, quadrics by type.
+Treelets list_all(const Geometry& geometry);
+
 }  // namespace rayengine

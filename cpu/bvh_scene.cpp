@@ -66,8 +66,11 @@ void BvhScene::fill(std::vector<TriangleBlock<T>>& blocks, Planeless planeless) 
   }
 }
 
-BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless) : geometry_(std::move(geometry)) {
-  treelets_ = build_treelets(treelet_primitives(*geometry_), leaf_size(*geometry_), frame_bounds(*geometry_));
+BvhScene::BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless, Structure structure)
+    : geometry_(std::move(geometry)) {
+  treelets_ = structure == Structure::none
+                  ? list_all(*geometry_)
+                  : build_treelets(treelet_primitives(*geometry_), leaf_size(*geometry_), frame_bounds(*geometry_));
   std::uint32_t blocks = 0;
   for (const Treelet& treelet : treelets_.treelets) leaves_.push_back(leaf(treelet, blocks));
   leaves_.push_back(leaf(treelets_.unbounded, blocks));

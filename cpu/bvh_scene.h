@@ -15,11 +15,14 @@ const BvhQueries& bvh_queries();
 /// exact arithmetic where double cannot tell keeps them.
 enum class Planeless { left_out, kept };
 
+/// Whether boxes say which primitives a ray may meet, or it is tested against all of them.
+enum class Structure { bvh, none };
+
 /// What a Geometry holds itself, not its instances, laid out for the queries of isa/bvh.inl. Immutable once built.
 class BvhScene {
  public:
   /// Throws Error when there is no memory.
-  BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless);
+  BvhScene(std::shared_ptr<const Geometry> geometry, Planeless planeless, Structure structure = Structure::bvh);
 
   const Geometry& geometry() const { return *geometry_; }
   const BvhJob& job() const { return job_; }

@@ -13,12 +13,13 @@ namespace {
 
 class BvhTracer final : public Tracer {
  public:
-  explicit BvhTracer(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
-      : scene_(geometry, Planeless::left_out),
+  BvhTracer(std::shared_ptr<const Geometry> geometry, Structure structure, const Stopwatch& watch = {})
+      : scene_(geometry, Planeless::left_out, structure),
+        name_(structure == Structure::bvh ? "bvh" : "loop"),
         instances_(*geometry, Planeless::left_out),
         build_seconds_(watch.seconds()) {}
 
-  std::string_view name() const override { return "bvh"; }
+  std::string_view name() const override { return name_; }
   Precision precision() const override { return Precision::robust; }
   double build_seconds() const override { return build_seconds_; }
   std::size_t bytes() const override { return scene_.bytes() + instances_.bytes(); }
@@ -34,6 +35,7 @@ class BvhTracer final : public Tracer {
   std::vector<Hit> all(const Ray& ray) const;
 
   BvhScene scene_;
+  std::string_view name_;
   BvhInstances instances_;
   double build_seconds_;
 };
@@ -126,7 +128,11 @@ std::unique_ptr<Tracer> make_bvh_tracer(std::shared_ptr<const Geometry> geometry
   if (precision == Precision::certified) return make_certified_bvh(std::move(geometry));
   if (precision != Precision::robust)
     throw Error("the bvh tracer holds the precisions robust and certified, not " + std::string(to_string(precision)));
-  return std::make_unique<BvhTracer>(std::move(geometry));
+  return std::make_unique<BvhTracer>(std::move(geometry), Structure::bvh);
+}
+
+std::unique_ptr<Tracer> make_loop_tracer(std::shared_ptr<const Geometry> geometry) {
+  return std::make_unique<BvhTracer>(std::move(geometry), Structure::none);
 }
 
 }  // namespace rayengine

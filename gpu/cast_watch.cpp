@@ -2,8 +2,6 @@
 
 #include <epoxy/gl.h>
 
-#include <ctime>
-
 #include "accel/stopwatch.h"
 
 namespace rayengine {
@@ -12,7 +10,7 @@ namespace {
 CastSeconds now() {
   static const Stopwatch watch;
   glFinish();
-  return {watch.seconds(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
+  return {watch.seconds(), processor_seconds()};
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "gpu/objects_engine.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "gpu/batches.h"
 #include "gpu/kernel_program.h"
@@ -11,21 +10,6 @@ namespace rayengine {
 namespace {
 
 constexpr GLsizei side = 256;
-
-/// All primitives as one list without bounds, quadrics by type.
-Treelets list_of(const Geometry& g) {
-  Treelets list;
-  list.frame = LocalFrame(frame_bounds(g));
-  list.triangles.resize(g.triangles.size());
-  list.quadrics.resize(g.quadrics.size());
-  std::iota(list.triangles.begin(), list.triangles.end(), 0u);
-  std::iota(list.quadrics.begin(), list.quadrics.end(), 0u);
-  std::stable_sort(list.quadrics.begin(), list.quadrics.end(),
-                   [&](auto a, auto b) { return g.quadrics[a].type < g.quadrics[b].type; });
-  list.unbounded.triangle_count = static_cast<std::uint32_t>(list.triangles.size());
-  list.unbounded.quadric_count = static_cast<std::uint32_t>(list.quadrics.size());
-  return list;
-}
 
 Program make_program(KernelType type, Precision precision) {
   if (precision == Precision::half)
@@ -41,7 +25,7 @@ Program make_program(KernelType type, Precision precision) {
 ObjectsEngine::ObjectsEngine(std::shared_ptr<const Geometry> geometry, Precision precision, int device)
     : context_(device),
       scene_(flatten(std::move(geometry))),
-      list_(list_of(*scene_.geometry)),
+      list_(list_all(*scene_.geometry)),
       textures_(upload(scene_, list_, context_.info())),
       passes_(passes()) {
   require_usable(context_);

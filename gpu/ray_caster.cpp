@@ -50,4 +50,6 @@ std::vector<glm::vec4> RayCaster::cast(std::span<const Ray> rays) {
   return colors;
 }
 
+const GpuInfo& RayCaster::gpu() const { return device_->engine.gpu(); }
+
 }  // namespace rayengine

@@ -11,6 +11,7 @@
 namespace rayengine {
 
 class GlThread;
+struct GpuInfo;
 
 /// What a picture of a RayCaster is lit by, and what its surfaces are like: Blinn-Phong.
 struct CastLight {
@@ -38,6 +39,7 @@ class RayCaster {
   /// What each ray sees: linear colour, and 1 where it hits anything, else zeros. Invalid rays see nothing. From any
   /// thread, one at a time. Throws Error when the device fails.
   std::vector<glm::vec4> cast(std::span<const Ray> rays);
+  const GpuInfo& gpu() const;
 
  private:
   struct Device;

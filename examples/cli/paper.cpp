@@ -14,7 +14,7 @@ struct Paper {
   int (*run)(const PaperOptions&);
 };
 constexpr std::array papers{Paper{"carr", run_carr}, Paper{"purcell", run_purcell}, Paper{"ralovich", run_ralovich},
-                            Paper{"szecsi", run_szecsi}};
+                            Paper{"szecsi", run_szecsi}, Paper{"wood", run_wood}};
 
 std::vector<std::string> names() {
   std::vector<std::string> result;
@@ -53,7 +53,11 @@ void add_paper(CLI::App& app, Action& action) {
       "sizes,\n"
       "  and the meshes that are named.\n"
       "szecsi: the hierarchical ray engine against the plain one, 10 to 10,000 triangles of glass; images of its "
-      "cones.",
+      "cones.\n"
+      "wood: a sphereflake of 7,381 spheres by a pass an object and by the same loop on the processor, 256x256 unless "
+      "a "
+      "size\n"
+      "  is named; and six quadrics.",
       options->common);
   sub->add_option("PAPER", options->name, "Which: " + CLI::detail::join(names(), ", "))
       ->type_name("")

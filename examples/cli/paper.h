@@ -22,6 +22,7 @@ int run_carr(const PaperOptions& options);
 int run_purcell(const PaperOptions& options);
 int run_ralovich(const PaperOptions& options);
 int run_szecsi(const PaperOptions& options);
+int run_wood(const PaperOptions& options);
 
 /// The scenes that were named, each with its file's name.
 std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& options);

@@ -11,10 +11,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <random>
 
+#include "accel/stopwatch.h"
 #include "accel/tracer.h"
 #include "accel/walk.h"
 #include "engine/load/load.h"
@@ -30,7 +30,7 @@ constexpr std::size_t ray_count = static_cast<std::size_t>(side) * side;
 constexpr int runs = 9;
 
 double now(bool software) {
-  if (software) return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  if (software) return processor_seconds();
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 

@@ -97,7 +97,8 @@ TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
   expect_failure(2, "render scene.nff --threads -1", "--threads");
   for (const char* size : {"0x0", "100000x100000", "12", "x", "12x", "12xab", "12x-3", "1e3x5", "99999999999x1"})
     expect_failure(2, std::string("render scene.nff --size ") + size, "WIDTHxHEIGHT");
-  expect_failure(2, "render scene.nff -o a.exr --aov depth,colour", "depth,normal,object,primitive,position,error,status");
+  expect_failure(2, "render scene.nff -o a.exr --aov depth,colour",
+                 "depth,normal,object,primitive,position,error,status");
   expect_failure(2, "render scene.nff -o a.png --aov depth", ".exr");
   expect_failure(2, "trace scene.nff", "--rays");
   expect_failure(2, "trace scene.nff --rays a.npy -o b.npy --query some", "--query");
@@ -485,6 +486,27 @@ TEST_F(Cli, PaperSzecsiHasItsOwnScenesAndSizes) {
   expect_failure(2, "paper szecsi scene.nff -o x", "its own scenes");
   expect_failure(2, "paper szecsi --size 64x64 -o x", "its own sizes");
 }
+
+TEST_F(Cli, PaperWoodWritesBothMethodsAndSixQuadrics) {
+  const test::Outcome outcome = run("paper wood --size 16x16 -o wood");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::istringstream csv(test::content(file("wood/wood.csv")));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "method,frames_per_s");
+  for (const std::string method : {"gpu", "software"}) {
+    double frames = 0;
+    ASSERT_TRUE(std::getline(csv, line));
+    ASSERT_EQ(std::sscanf(line.c_str(), (method + ",%lf").c_str(), &frames), 1) << line;
+    EXPECT_GT(frames, 0);
+  }
+  EXPECT_FALSE(std::getline(csv, line)) << line;
+  for (const char* type : {"sphere", "cylinder", "cone", "paraboloid", "hyperboloid1", "hyperboloid2"})
+    EXPECT_TRUE(fs::exists(file(std::string("wood/wood-") + type + ".png"))) << type;
+  EXPECT_TRUE(fs::exists(file("wood/wood.md")));
+}
+
+TEST_F(Cli, PaperWoodHasItsOwnScene) { expect_failure(2, "paper wood scene.nff -o x", "its own scenes"); }
 
 TEST_F(Cli, PaperRalovichTakesMeshesAlone) {
   const test::Outcome outcome = run("paper ralovich scene.nff -o ralovich");
