@@ -1,5 +1,5 @@
 # Embeds text files as C++: embed_text(OUTPUT file.cpp FUNCTION name FILES a.glsl b.glsl ...) generates the function
-# `std::span<const EmbeddedText> name()` of rayengine, declared in gpu/shaders.h. A text is named by its path from the root.
+# `std::span<const EmbeddedText> name()` of rayengine, declared in gpu/device/shaders.h. A text is named by its path from the root.
 # Run as a script, it writes that file. C++ string literals have a limit of length, so texts are arrays of characters.
 if(CMAKE_SCRIPT_MODE_FILE)
   set(arrays "")
@@ -12,7 +12,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
     string(APPEND table "    {\"${name}\", {text${index}, sizeof(text${index}) - 1}},\n")
     math(EXPR index "${index} + 1")
   endforeach()
-  file(WRITE ${OUTPUT} "#include \"gpu/shaders.h\"\n\nnamespace rayengine {\nnamespace {\n\n${arrays}\n"
+  file(WRITE ${OUTPUT} "#include \"gpu/device/shaders.h\"\n\nnamespace rayengine {\nnamespace {\n\n${arrays}\n"
     "constexpr EmbeddedText table[] = {\n${table}};\n\n}  // namespace\n\n"
     "std::span<const EmbeddedText> ${FUNCTION}() { return table; }\n\n}  // namespace rayengine\n")
   return()

@@ -8,12 +8,12 @@
 #include "cpu/reference_tracer.h"
 #include "engine/certify.h"
 #include "engine/hybrid/hybrid_tracer.h"
-#include "gpu/cones_tracer.h"
-#include "gpu/grid_tracer.h"
-#include "gpu/hardware.h"
-#include "gpu/objects_tracer.h"
-#include "gpu/points_tracer.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/cones/cones_tracer.h"
+#include "gpu/device/hardware.h"
+#include "gpu/grid/grid_tracer.h"
+#include "gpu/objects/objects_tracer.h"
+#include "gpu/points/points_tracer.h"
+#include "gpu/stream/stream_tracer.h"
 
 namespace rayengine {
 namespace {

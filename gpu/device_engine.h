@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "gpu/context.h"
-#include "gpu/frame_ray.h"
+#include "gpu/device/context.h"
+#include "gpu/scene/frame_ray.h"
 
 namespace rayengine {
 

@@ -8,8 +8,8 @@
 
 #include "accel/stopwatch.h"
 #include "accel/surface.h"
-#include "gpu/flat_scene.h"
-#include "gpu/gl_thread.h"
+#include "gpu/device/gl_thread.h"
+#include "gpu/scene/flat_scene.h"
 
 namespace rayengine {
 namespace {

@@ -14,7 +14,7 @@
 #include "engine/measure/rays.h"
 #include "engine/query.h"
 #include "engine/tracers.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/stream/stream_tracer.h"
 
 namespace rayengine {
 namespace {

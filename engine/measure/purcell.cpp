@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "engine/render/cast.h"
-#include "gpu/grid_caster.h"
+#include "gpu/grid/grid_caster.h"
 
 namespace rayengine {
 namespace {

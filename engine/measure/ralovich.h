@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/measure/ralovich_scenes.h"
-#include "gpu/points_caster.h"
+#include "gpu/points/points_caster.h"
 
 namespace rayengine {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "gpu/glass_caster.h"
+#include "gpu/cones/glass_caster.h"
 
 namespace rayengine {
 

@@ -10,8 +10,8 @@
 #include "engine/render/cast.h"
 #include "engine/render/optics.h"
 #include "engine/tracers.h"
-#include "gpu/context.h"
-#include "gpu/ray_caster.h"
+#include "gpu/device/context.h"
+#include "gpu/objects/ray_caster.h"
 
 namespace rayengine {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "gpu/points_caster.h"
+#include "gpu/points/points_caster.h"
 
 // What casters on the GPU can be told of a scene: they take flat normals, one background colour, and no glass.
 namespace rayengine {

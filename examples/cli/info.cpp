@@ -9,7 +9,7 @@
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
 #include "examples/cli/report.h"
-#include "gpu/gpu_report.h"
+#include "gpu/device/gpu_report.h"
 
 namespace rayengine::cli {
 namespace {

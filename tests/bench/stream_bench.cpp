@@ -19,8 +19,8 @@
 #include "accel/walk.h"
 #include "engine/load/load.h"
 #include "engine/measure/rays.h"
-#include "gpu/stream_engine.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/stream/stream_engine.h"
+#include "gpu/stream/stream_tracer.h"
 
 namespace rayengine {
 namespace {

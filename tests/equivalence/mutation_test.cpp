@@ -8,7 +8,7 @@
 #include "cpu/reference_tracer.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/stream/stream_tracer.h"
 #include "tests/equivalence/cases.h"
 
 namespace rayengine {

@@ -8,9 +8,9 @@
 #include "cpu/reference_tracer.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
-#include "gpu/cones_pass.h"
-#include "gpu/cones_tracer.h"
-#include "gpu/stream_batch.h"
+#include "gpu/cones/cones_pass.h"
+#include "gpu/cones/cones_tracer.h"
+#include "gpu/stream/stream_batch.h"
 #include "tests/ray_tiles.h"
 
 namespace rayengine {

@@ -1,11 +1,11 @@
-#include "gpu/context.h"
+#include "gpu/device/context.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "accel/tracer.h"
-#include "gpu/program.h"
+#include "gpu/device/program.h"
 
 using namespace rayengine;
 

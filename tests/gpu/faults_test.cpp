@@ -6,9 +6,9 @@
 
 #include <string>
 
-#include "gpu/objects_tracer.h"
-#include "gpu/scene_textures.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/objects/objects_tracer.h"
+#include "gpu/scene/scene_textures.h"
+#include "gpu/stream/stream_tracer.h"
 
 namespace rayengine {
 namespace {

@@ -1,6 +1,6 @@
 // Pictures of glass, followed on the device, against paths followed by the renderer's optics on the processor.
 
-#include "gpu/glass_caster.h"
+#include "gpu/cones/glass_caster.h"
 
 #include <gtest/gtest.h>
 

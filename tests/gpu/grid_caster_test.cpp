@@ -1,6 +1,6 @@
 // Pictures by Purcell's kernels against the renderer's own formulas on the oracle's hits.
 
-#include "gpu/grid_caster.h"
+#include "gpu/grid/grid_caster.h"
 
 #include <gtest/gtest.h>
 

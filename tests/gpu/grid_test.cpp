@@ -4,7 +4,7 @@
 
 #include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
-#include "gpu/grid_tracer.h"
+#include "gpu/grid/grid_tracer.h"
 
 namespace rayengine {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
-#include "gpu/objects_tracer.h"
+#include "gpu/objects/objects_tracer.h"
 
 namespace rayengine {
 namespace {

@@ -1,6 +1,6 @@
 // Pictures cast and composited on the device against the renderer's.
 
-#include "gpu/points_caster.h"
+#include "gpu/points/points_caster.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "gpu/points_tracer.h"
+#include "gpu/points/points_tracer.h"
 
 #include <gtest/gtest.h>
 

@@ -10,12 +10,12 @@
 #include <set>
 #include <string>
 
-#include "gpu/gpu_report.h"
-#include "gpu/objects_tracer.h"
-#include "gpu/points_caster.h"
-#include "gpu/points_tracer.h"
-#include "gpu/ray_caster.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/device/gpu_report.h"
+#include "gpu/objects/objects_tracer.h"
+#include "gpu/objects/ray_caster.h"
+#include "gpu/points/points_caster.h"
+#include "gpu/points/points_tracer.h"
+#include "gpu/stream/stream_tracer.h"
 #include "tests/temporary.h"
 
 namespace rayengine {

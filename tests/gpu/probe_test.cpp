@@ -1,10 +1,10 @@
-#include "gpu/probe.h"
+#include "gpu/device/probe.h"
 
 #include <gtest/gtest.h>
 
 #include "accel/tracer.h"
-#include "gpu/context.h"
-#include "gpu/gpu_report.h"
+#include "gpu/device/context.h"
+#include "gpu/device/gpu_report.h"
 #include "tests/temporary.h"
 
 using namespace rayengine;

@@ -1,6 +1,6 @@
 // Pictures shaded on the device against the renderer's own formulas on the oracle's hits.
 
-#include "gpu/ray_caster.h"
+#include "gpu/objects/ray_caster.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
-#include "gpu/stream_order.h"
-#include "gpu/stream_tracer.h"
+#include "gpu/stream/stream_order.h"
+#include "gpu/stream/stream_tracer.h"
 
 namespace rayengine {
 namespace {

@@ -1,4 +1,4 @@
-#include "gpu/grid_policy.h"
+#include "gpu/grid/grid_policy.h"
 
 #include <gtest/gtest.h>
 

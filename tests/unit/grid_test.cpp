@@ -13,7 +13,7 @@
 #include "cpu/reference_tracer.h"
 #include "engine/measure/random.h"
 #include "engine/measure/rays.h"
-#include "gpu/frame_ray.h"
+#include "gpu/scene/frame_ray.h"
 
 namespace rayengine {
 namespace {
