@@ -31,7 +31,7 @@ KERNEL REAL discriminant_error(REAL a, REAL b, REAL c, REAL ea, REAL eb, REAL ec
 KERNEL REAL root_error(REAL r, REAL a, REAL b, REAL c, REAL ea, REAL eb, REAL ec) {
   REAL under_root = discriminant(a, b, c);
   REAL e = (ea * magnitude(r) + 2 * eb) * magnitude(r) + ec;
-  REAL per_h = 1 / root(under_root);
+  REAL per_h = 1 / root(pick(under_root > 0, under_root, a - a));  // as in roots(), so that it is taken once
   REAL along = per_h * (e + discriminant_rounding(a, b, c) * per_h * magnitude(r)) + ROUNDINGS(20) * magnitude(r);
   return pick(4 * magnitude(a) * e < under_root, along, REAL_MAX);
 }

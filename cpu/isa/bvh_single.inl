@@ -186,7 +186,8 @@ void certify_all(const BvhJob& job, std::uint32_t i, const State<double>& s, Col
     if (possible)
       collect_possible(s, {t, error, job.quadrics[i], static_cast<std::uint32_t>(part), 0, 0}, certain, collect, to);
   };
-  certain_crossings<kind>(*job.geometry, quadric, job.norms[i], s.rays, s.certainty.o_extra, s.certainty.d_size, take);
+  certain_crossings<kind, true>(*job.geometry, quadric, job.norms[i], s.rays, s.certainty.o_extra, s.certainty.d_size,
+                                take);
 }
 template <int... kind>
 INLINE void certify_all(int which, const BvhJob& job, std::uint32_t i, const State<double>& s, CollectAnswer collect,

@@ -156,7 +156,8 @@ unsigned certify_quadric(const BvhJob& job, std::uint32_t i, State<REAL>& s) {
     hit |= admit<ask>(s, t, error, possible, certain, splat<REAL>(quadric.object), splat<REAL>(job.quadrics[i]),
                       splat<REAL>(part), REAL{}, REAL{});
   };
-  certain_crossings<kind>(*job.geometry, quadric, job.norms[i], s.rays, s.certainty.o_extra, s.certainty.d_size, take);
+  certain_crossings<kind, false>(*job.geometry, quadric, job.norms[i], s.rays, s.certainty.o_extra, s.certainty.d_size,
+                                 take);
   return hit;
 }
 

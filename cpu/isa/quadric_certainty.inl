@@ -106,9 +106,10 @@ INLINE void certain_cap(const Approach<REAL>& a, double at, double part, const k
         kernels::both(sure, verdict.inside), part);
 }
 
-/// The side of a quadric: calls admit(t, error, possible, certain, part) for each of its roots.
-template <QuadricType type, class REAL, class Admit>
-INLINE void certain_side(const Geometry& geometry, const Quadric& q, const Approach<REAL>& a,
+/// The side of a quadric: calls admit(t, error, possible, certain, part) for its roots. Where the near one is hit for
+/// sure after tmin, the far one matters only to those who want `every` hit.
+template <QuadricType type, bool every, class REAL, class Admit>
+INLINE void certain_side(const Geometry& geometry, const Quadric& q, const Approach<REAL>& a, REAL tmin,
                          const kernels::Mask<REAL>& active, Admit&& admit) {
   constexpr bool flat = type == QuadricType::plane || type == QuadricType::disk;
   const FormSize size = type == QuadricType::general ? size_of(geometry.forms.data()[q.form].matrix)
@@ -123,7 +124,7 @@ INLINE void certain_side(const Geometry& geometry, const Quadric& q, const Appro
   if (none(possible)) return;
   const auto real = under_root > 4 * wrong;
   kernels::roots(f.a, f.b, f.c, near, far);
-  const auto consider = [&](REAL r) {
+  const auto consider = [&](REAL r, const kernels::Mask<REAL>& possible) {
     const REAL r_error = kernels::root_error(r, f.a, f.b, f.c, ea, eb, ec);
     const auto sure = kernels::both(real, r_error < splat<REAL>(std::numeric_limits<double>::max()));
     Verdict<REAL> verdict{sure, !sure};
@@ -131,16 +132,19 @@ INLINE void certain_side(const Geometry& geometry, const Quadric& q, const Appro
       verdict = certainly_clipped<type>(geometry, q, a, r, r_error);
     else if (q.zmin > -1 || q.zmax < 1)
       verdict = certainly_clipped<type>(geometry, q, a, r, r_error);
-    admit(a.shift + r, t_error(a, r, r_error, sure), kernels::both(possible, !kernels::both(sure, verdict.outside)),
-          kernels::both(sure, verdict.inside), 0.0);
+    const REAL t = a.shift + r, error = t_error(a, r, r_error, sure);
+    const auto certain = kernels::both(sure, verdict.inside);
+    admit(t, error, kernels::both(possible, !kernels::both(sure, verdict.outside)), certain, 0.0);
+    return kernels::both(certain, t - error > tmin);
   };
-  consider(near);
-  if (!flat) consider(far);
+  const auto settled = consider(near, possible);
+  const auto open = every ? possible : kernels::both(possible, !settled);
+  if (!flat && !none(open)) consider(far, open);
 }
 
 /// Calls admit(t, error, possible, certain, part) for every place where rays may meet the quadric. `norm` is the
-/// largest row sum of its map's magnitudes; `o_extra` and `d_size` are as in Certainty.
-template <int kind, class REAL, class Admit>
+/// largest row sum of its map's magnitudes; `o_extra` and `d_size` are as in Certainty; for `every` see certain_side.
+template <int kind, bool every, class REAL, class Admit>
 INLINE void certain_crossings(const Geometry& geometry, const Quadric& q, double norm, const Rays<REAL>& rays,
                               REAL o_extra, REAL d_size, Admit&& admit) {
   constexpr QuadricType type = type_of(kind);
@@ -157,7 +161,7 @@ INLINE void certain_crossings(const Geometry& geometry, const Quadric& q, double
     to_unit_ball(q.to_object, o, a.d);
   else
     to_object(q.to_object, o, a.d);
-  if (is_round(kind) && !capped) {
+  if (is_round(kind)) {  // whose caps lie within the same distance
     const auto slack = [&](REAL, REAL) { return kernels::distance_error(o_size, a.d_size); };
     active = kernels::both(!passes_by<type == QuadricType::cylinder>(o, a.d, slack), active);
     if (none(active)) return;
@@ -165,7 +169,7 @@ INLINE void certain_crossings(const Geometry& geometry, const Quadric& q, double
   kernels::approach(o, a.d, a.p, a.shift);
   a.p_size = largest_of(a.p);
   a.p_error = kernels::approach_error(o_size, a.d_size, a.shift);
-  certain_side<type>(geometry, q, a, active, admit);
+  certain_side<type, every>(geometry, q, a, rays.tmin, active, admit);
   if (!capped) return;
   // The apex of a cone is a cap without area.
   if (type != QuadricType::cone || q.zmin != 0) certain_cap<type>(a, q.zmin, 1, active, admit);

@@ -159,13 +159,13 @@ INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, con
     to_object(q.to_object, o, d);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
   // Most rays that meet a quadric's box pass it by: those are spared the divisions and the root.
-  if constexpr (is_round(kind))
-    if (kind == ball_kind || !q.capped) {
-      constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
-      const auto slack = [](REAL oo, REAL dd) { return dd * ((16 * unit) + (16 * unit) * oo); };
-      if (none(kernels::both(!passes_by<type == QuadricType::cylinder>(o, d, slack), rays.active)))
-        return {largest, largest, largest, largest};
-    }
+  // A cylinder's caps lie within the same distance of its axis as its side.
+  if constexpr (is_round(kind)) {
+    constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
+    const auto slack = [](REAL oo, REAL dd) { return dd * ((16 * unit) + (16 * unit) * oo); };
+    if (none(kernels::both(!passes_by<type == QuadricType::cylinder>(o, d, slack), rays.active)))
+      return {largest, largest, largest, largest};
+  }
   Vec3<REAL> p;
   REAL s, near, far;
   kernels::approach(o, d, p, s);
