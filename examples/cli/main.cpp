@@ -104,8 +104,9 @@ int answer(int argc, char** argv) {
     return answer_parse(app, error);
   }
   if (!action)
-    return report(wrong_usage, "rayengine",
-                  "say what to do: render, trace, compare, bench, chart, stress, paper or info (see 'rayengine --help')");
+    return report(
+        wrong_usage, "rayengine",
+        "say what to do: render, trace, compare, bench, chart, stress, paper or info (see 'rayengine --help')");
   return run(app, action);
 }
 
