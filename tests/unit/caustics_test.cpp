@@ -120,7 +120,14 @@ TEST(Caustics, ShowInThePictureOnlyWhenAskedFor) {
   EXPECT_EQ(dark, 0);  // the ball's shadow
   EXPECT_GT(*lit.image.pixel(16, 16), 4);
   EXPECT_GT(lit.stats.photon_rays, 100000u);
-  EXPECT_EQ(lit.image.pixels, render(scene, *tracer, {.caustics = 100000, .threads = 3}).image.pixels);
+}
+
+TEST(RenderInvariance, CausticsOfAnyNumberOfThreadsAreTheSame) {
+  Scene scene = ball_over_floor(sun({0, 0, -1}));
+  scene.camera = {.from = {0, -2.5, -1.2}, .at = {0, 0, -floor_below}, .fov = 30, .size = {32, 32}};
+  const auto tracer = make_tracer("bvh", scene.geometry);
+  EXPECT_EQ(render(scene, *tracer, {.caustics = 100000, .threads = 1}).image.pixels,
+            render(scene, *tracer, {.caustics = 100000, .threads = 3}).image.pixels);
 }
 
 TEST(Caustics, OfScenesWithoutGlassOrLightAreNone) {
