@@ -1,31 +1,13 @@
 #include "gpu/device/program_cache.h"
 
-#include <unistd.h>
-
-#include <atomic>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "accel/cache_folder.h"
+
 namespace rayengine {
 namespace {
-
-namespace fs = std::filesystem;
-
-fs::path cache_folder() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "rayengine";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "rayengine";
-  return {};
-}
-
-/// FNV-1a. Source: Fowler, Noll, Vo, "The FNV Non-Cryptographic Hash Algorithm".
-std::uint64_t fnv1a(const std::string& text, std::uint64_t hash) {
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
 
 std::string gl_text(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
@@ -38,14 +20,10 @@ bool gives_binaries() {
 }  // namespace
 
 ProgramCache::ProgramCache(const std::string& sources) {
-  const fs::path folder = cache_folder();
+  const std::filesystem::path folder = cache_folder();
   if (folder.empty() || !gives_binaries()) return;
   const std::string key = gl_text(GL_VENDOR) + gl_text(GL_RENDERER) + gl_text(GL_VERSION) + sources;
-  char name[48];  // two bases make 128 bits of one hash of 64
-  std::snprintf(name, sizeof name, "%016llx%016llx.program",
-                static_cast<unsigned long long>(fnv1a(key, 0xcbf29ce484222325u)),
-                static_cast<unsigned long long>(fnv1a(key, 0x9e3779b97f4a7c15u)));
-  path_ = folder / name;
+  path_ = folder / (ContentHash().add(std::as_bytes(std::span(key))).name() + ".program");
 }
 
 ProgramObject ProgramCache::load() const {
@@ -69,16 +47,7 @@ void ProgramCache::store(const ProgramObject& program) const {
   std::vector<char> binary(static_cast<std::size_t>(size));
   GLenum format = 0;
   glGetProgramBinary(program.id(), size, nullptr, &format, binary.data());
-  std::error_code ignored;
-  fs::create_directories(fs::path(path_).parent_path(), ignored);
-  // Others may be reading, and other threads writing the same.
-  static std::atomic<unsigned> stored = 0;
-  const std::string unfinished = path_ + "." + std::to_string(getpid()) + "." + std::to_string(stored++);
-  std::ofstream file(unfinished, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(&format), sizeof format).write(binary.data(), size);
-  file.close();
-  if (file) fs::rename(unfinished, path_, ignored);
-  if (!file || ignored) fs::remove(unfinished, ignored);
+  write_cache_file(path_, {std::as_bytes(std::span(&format, 1)), std::as_bytes(std::span(binary))});
 }
 
 }  // namespace rayengine
