@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "accel/geometry.h"
+#include "accel/norms.h"
 #include "accel/ray.h"
 
 // A hit's primitive solved again in double, with a running bound on every rounding. Shared by surface.cpp and the two
@@ -15,11 +15,6 @@ inline constexpr double roundoff = 0x1p-53;
 
 /// A bound for n roundings in a row (Higham, "Accuracy and Stability of Numerical Algorithms", lemma 3.1).
 constexpr double gamma(int n) { return n * roundoff / (1 - n * roundoff); }
-
-inline double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
-/// A bound on the length, without a root.
-inline double sum_abs(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A vector's direction, and one over its length. Zero has the direction zero, and an infinite second.
 struct Direction {
@@ -33,7 +28,7 @@ inline Direction normalised(const glm::dvec3& v) {
     const double per_length = 1 / std::sqrt(square);
     return {per_length * v, per_length};
   }
-  const double scale = largest(v);  // squares would vanish or overflow
+  const double scale = largest_component(v);  // squares would vanish or overflow
   if (!(scale > 0)) return {glm::dvec3(0), std::numeric_limits<double>::infinity()};
   const glm::dvec3 w = v / scale;
   const double length = glm::length(w);

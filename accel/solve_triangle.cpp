@@ -26,8 +26,8 @@ Solution solve_triangle(const PrimitiveRef& ref, const LocalRay& ray, double t_g
   const double stretch = ref.instance ? world.per_length / flat.per_length : 1;
 
   Solution s{.t = t_guess, .error = infinity, .normal = world.unit};
-  s.magnitude = stretch * std::max({largest(a), largest(b), largest(c)});
-  if (ref.instance) s.magnitude += largest(ref.instance->to_group.origin);
+  s.magnitude = stretch * std::max({largest_component(a), largest_component(b), largest_component(c)});
+  if (ref.instance) s.magnitude += largest_component(ref.instance->to_group.origin);
   s.spread = world.per_length * std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac) * glm::dot(bc, bc));
 
   const double over = glm::dot(n, ao), under = glm::dot(n, ray.direction);

@@ -31,12 +31,12 @@ Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   result.is_triangle = ref.is_triangle();
   if (result.is_triangle && !ref.geometry->normals.empty())
     if (const glm::dvec3 n = interpolated_normal(ref, s.barycentrics); n != glm::dvec3(0)) result.shading_normal = n;
-  result.magnitude = std::max(s.magnitude, largest(result.position));
+  result.magnitude = std::max(s.magnitude, largest_component(result.position));
   result.spread = s.spread;
   // Of the two bounds on the distance each is infinite where the surface is singular or seen edge-on. The position
   // itself is rounded: a product and a sum of numbers no larger than these.
   const double distance = std::min(s.distance, s.error * sum_abs(ray.direction));
-  const double rounding = gamma(2) * (largest(ray.origin) + std::abs(s.t) * largest(ray.direction));
+  const double rounding = gamma(2) * (largest_component(ray.origin) + std::abs(s.t) * largest_component(ray.direction));
   result.error = (std::isfinite(distance) ? distance : 0) + 2 * rounding;
   result.material = ref.geometry->objects[ref.object].material;
   return result;

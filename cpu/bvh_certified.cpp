@@ -187,9 +187,8 @@ bool CertifiedBvh::collect(const Ray& ray, std::vector<Hit>& hits) const {
   bool sure = true;
   const auto add = [&](const BvhScene& scene, const Instance* instance, const Ray& local, const RayError& error) {
     std::vector<BvhAnswer> answers;
-    const auto collect = [](void* to, const BvhAnswer& a) { static_cast<std::vector<BvhAnswer>*>(to)->push_back(a); };
     sure = sure && scene.moderate() && is_moderate(local);
-    if (sure) bvh_queries().certain_all(scene.job(), local, error, collect, &answers);
+    if (sure) bvh_queries().certain_all(scene.job(), local, error, append, &answers);
     for (const BvhAnswer& answer : answers) {
       sure = sure && !answer.unsure && answer.t - answer.error > ray.tmin && answer.t + answer.error <= ray.tmax;
       if (sure) hits.push_back(hit_of(ray, {&scene.geometry(), instance, answer}));

@@ -24,7 +24,7 @@ struct Trial {
   RayError error;
   reference::Sink& sink;
 
-  double take(const BvhLeaf& leaf) const {
+  double take(const BvhLeaf& leaf) {
     const Geometry& geometry = scene.geometry();
     for (std::uint32_t i = 0; i < leaf.triangle_count; ++i)
       reference::try_triangle(placed, geometry, scene.triangle(leaf, i), sink);
@@ -34,18 +34,17 @@ struct Trial {
   }
 
   /// Everything in every leaf that the ray may meet.
-  void try_leaves() const {
+  void try_leaves() {
     Ray rest = ray;
     if (scene.job().unbounded) rest.tmax = take(*scene.job().unbounded);
-    const auto take_leaf = [](void* to, const BvhLeaf& leaf) { return static_cast<const Trial*>(to)->take(leaf); };
-    if (is_valid(rest)) bvh_queries().leaves(scene.job(), rest, take_leaf, const_cast<Trial*>(this));
+    const auto take_leaf = [](void* to, const BvhLeaf& leaf) { return static_cast<Trial*>(to)->take(leaf); };
+    if (is_valid(rest)) bvh_queries().leaves(scene.job(), rest, take_leaf, this);
   }
 
   /// What bounds in double cannot rule out.
-  void try_possible(std::vector<BvhFound>& possible) const {
+  void try_possible(std::vector<BvhFound>& possible) {
     std::vector<BvhAnswer> answers;
-    const auto collect = [](void* to, const BvhAnswer& a) { static_cast<std::vector<BvhAnswer>*>(to)->push_back(a); };
-    bvh_queries().certain_all(scene.job(), ray, error, collect, &answers);
+    bvh_queries().certain_all(scene.job(), ray, error, append, &answers);
     std::vector<std::pair<bool, std::uint32_t>> primitives;  // whether it is a triangle, and which
     for (const BvhAnswer& a : answers) {
       possible.push_back({&scene.geometry(), placed.instance, a});
@@ -58,7 +57,7 @@ struct Trial {
                   : reference::try_quadric(placed, scene.geometry(), index, sink);
   }
 
-  void run(std::vector<BvhFound>& possible) const {
+  void run(std::vector<BvhFound>& possible) {
     scene.moderate() && is_moderate(ray) ? try_possible(possible) : try_leaves();
   }
 };

@@ -1,6 +1,7 @@
 #include "cpu/bvh_hit.h"
 
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "accel/surface.h"
 
@@ -23,6 +24,10 @@ void set_quadric(const Ray& ray, const BvhFound& found, Hit& hit) {
 }
 
 }  // namespace
+
+void append(void* answers, const BvhAnswer& answer) {
+  static_cast<std::vector<BvhAnswer>*>(answers)->push_back(answer);
+}
 
 Hit hit_of(const Ray& ray, const BvhFound& found) {
   const BvhAnswer& a = found.answer;

@@ -16,6 +16,9 @@ struct BvhFound {
   BvhAnswer answer{};
 };
 
+/// A CollectAnswer for a std::vector<BvhAnswer>.
+void append(void* answers, const BvhAnswer& answer);
+
 /// The answer to `ray`, in the terms of the geometry that rays are traced in.
 Hit hit_of(const Ray& ray, const BvhFound& found);
 

@@ -26,11 +26,6 @@ TriangleBlock<T> empty_block() {
   return block;
 }
 
-/// What makes up a general form, all of it zero or moderate.
-bool is_moderate(const GeneralForm& form) {
-  return std::all_of(form.matrix.begin(), form.matrix.end(), [](double a) { return std::abs(a) <= moderate_limit; });
-}
-
 }  // namespace
 
 const BvhQueries& bvh_queries() {

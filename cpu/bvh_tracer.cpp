@@ -104,8 +104,7 @@ std::vector<Hit> BvhTracer::all(const Ray& ray) const {
   std::vector<Hit> hits;
   const auto add = [&](const BvhScene& scene, const Instance* instance, const Ray& local) {
     std::vector<BvhAnswer> answers;
-    const auto collect = [](void* to, const BvhAnswer& a) { static_cast<std::vector<BvhAnswer>*>(to)->push_back(a); };
-    if (is_valid(local)) bvh_queries().all(scene.job(), local, collect, &answers);
+    if (is_valid(local)) bvh_queries().all(scene.job(), local, append, &answers);
     for (const BvhAnswer& answer : answers) hits.push_back(hit_of(ray, {&scene.geometry(), instance, answer}));
     return ray.tmax;
   };
