@@ -1,0 +1,126 @@
+#include "engine/plan/recognise/outline.h"
+
+#include <algorithm>
+
+#include "engine/plan/recognise/profile.h"
+
+namespace rayengine::surfaces {
+namespace {
+
+class Comparison {
+ public:
+  Comparison(const Region& region, const Candidate& candidate, const WorldToObject& map)
+      : region_(region), candidate_(candidate), map_(map), lengths_(lengths(candidate.to_world)) {}
+
+  std::optional<Outline> run() {
+    switch (candidate_.type) {
+      case QuadricType::sphere: return whole();
+      case QuadricType::plane:
+      case QuadricType::saddle: return rectangle();
+      default: break;
+    }
+    return fibres_of(candidate_.type, candidate_.clip[0]) == Fibres::radial ? ends() : rim();
+  }
+
+ private:
+  /// Calls visit(from, to), object space, for each half-edge of the outline while that holds.
+  template <class Visit>
+  bool each_edge(Visit visit) const {
+    for (const std::uint32_t t : region_.triangles())
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h)
+        if (region_.is_outline(h) && !visit(point(region_.mesh.from(h)), point(region_.mesh.to(h)))) return false;
+    return true;
+  }
+  template <class Visit>
+  void each_corner(Visit visit) const {
+    for (const std::uint32_t t : region_.triangles())
+      for (int k = 0; k < 3; ++k) visit(map_.point(region_.corner(t, k)));
+  }
+  glm::dvec3 point(std::uint32_t vertex) const { return map_.point(region_.mesh.positions[vertex]); }
+
+  std::optional<Outline> whole() const {
+    return each_edge([](auto&&...) { return false; }) ? std::optional(Outline{}) : std::nullopt;
+  }
+
+  std::optional<Outline> ends() const {
+    const auto [low, high] = candidate_.clip;
+    const double middle = 0.5 * (low + high);
+    double off = 0;
+    const bool one_side_each = each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
+      const double end = a.z < middle ? low : high;
+      off = std::max({off, std::abs(a.z - end), std::abs(b.z - end)});
+      return (a.z < middle) == (b.z < middle);
+    });
+    if (!one_side_each) return {};
+    each_corner([&](const glm::dvec3& p) { off = std::max({off, low - p.z, p.z - high}); });
+    const Radius radius{candidate_.type};
+    const double slope = std::max(std::abs(radius.slope(low - off)), std::abs(radius.slope(high + off)));
+    Outline outline;
+    outline.distance = off * std::hypot(lengths_.z, slope * std::max(lengths_.x, lengths_.y));
+    outline.lower.z = low + off, outline.upper.z = high - off;
+    return outline;
+  }
+
+  double rim_radius() const {
+    const double z = candidate_.clip[1];
+    switch (candidate_.type) {
+      case QuadricType::cone: return z;
+      case QuadricType::paraboloid: return std::sqrt(z);
+      case QuadricType::hyperboloid2: return std::sqrt(z * z - 1);
+      default: return 1;
+    }
+  }
+
+  std::optional<Outline> rim() const {
+    const double rim = rim_radius();
+    double off = 0;
+    each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
+      const glm::dvec2 from(a), along = glm::dvec2(b) - from;
+      const double size = glm::dot(along, along);
+      const double at = size > 0 ? std::clamp(-glm::dot(from, along) / size, 0., 1.) : 0;
+      off = std::max(off, rim - glm::length(from + at * along));
+      return true;
+    });
+    each_corner([&](const glm::dvec3& p) { off = std::max(off, std::hypot(p.x, p.y) - rim); });
+    Outline outline;
+    const double slope = Height{candidate_.type}.steepest(rim + off, 0);
+    outline.distance = off * std::hypot(std::max(lengths_.x, lengths_.y), slope * lengths_.z);
+    outline.radius = rim - off;
+    return outline;
+  }
+
+  std::optional<Outline> rectangle() const {
+    const glm::dvec2 half = candidate_.half, size(lengths_);
+    glm::dvec2 off(0);
+    each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
+      const glm::dvec2 from = glm::abs(glm::abs(glm::dvec2(a)) - half), to = glm::abs(glm::abs(glm::dvec2(b)) - half);
+      // Both ends at one side, the one that they are nearest to.
+      double x = std::max(from.x, to.x), y = std::max(from.y, to.y);
+      if (a.x * b.x < 0) x = infinity;
+      if (a.y * b.y < 0) y = infinity;
+      x* size.x < y* size.y ? off.x = std::max(off.x, x) : off.y = std::max(off.y, y);
+      return true;
+    });
+    each_corner([&](const glm::dvec3& p) { off = glm::max(off, glm::abs(glm::dvec2(p)) - half); });
+    const glm::dvec2 reach = half + off;
+    const double slope = Height{candidate_.type}.steepest(reach.x, reach.y);
+    const double across = glm::length(off * size), down = slope * glm::length(off) * lengths_.z;
+    Outline outline;
+    outline.distance = std::hypot(across, down);
+    outline.lower = glm::dvec3(off - half, -infinity), outline.upper = glm::dvec3(half - off, infinity);
+    return outline;
+  }
+
+  const Region& region_;
+  const Candidate& candidate_;
+  const WorldToObject& map_;
+  glm::dvec3 lengths_;
+};
+
+}  // namespace
+
+std::optional<Outline> compare_outline(const Region& region, const Candidate& candidate, const WorldToObject& map) {
+  return Comparison(region, candidate, map).run();
+}
+
+}  // namespace rayengine::surfaces

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/plan/recognise/candidate.h"
+
+namespace rayengine::surfaces {
+
+/// How a region's outline differs from that of a clipped quadric.
+struct Outline {
+  double distance = 0;  ///< bound on what that adds to the distance of the surfaces, in the mesh's units
+  glm::dvec3 lower{-infinity}, upper{infinity};  ///< object space: no outline is between these
+  double radius = infinity;                      ///< nor within this distance of the axis
+
+  /// Whether a point is inside, away from the outline.
+  bool contains(const glm::dvec3& p) const {
+    return p.x > lower.x && p.y > lower.y && p.z > lower.z && p.x < upper.x && p.y < upper.y && p.z < upper.z &&
+           p.x * p.x + p.y * p.y < radius * radius;
+  }
+};
+
+/// Nothing where the outline is another than the candidate's: for a whole sphere none, for a tube one line round each
+/// end, for a dome or disk one round the rim, for a rectangle one along its sides. How many lines, and which way they
+/// run, does not matter here: whoever asks counts how often the region covers what is inside.
+std::optional<Outline> compare_outline(const Region& region, const Candidate& candidate, const WorldToObject& map);
+
+}  // namespace rayengine::surfaces

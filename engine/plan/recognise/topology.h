@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "accel/ray.h"
+
+namespace rayengine::surfaces {
+
+/// A mesh's triangles and how they meet. Half-edge 3 t + k runs from corner k of triangle t to its next corner.
+struct Topology {
+  std::span<const glm::dvec3> positions;
+  std::span<const glm::uvec3> triangles;
+  /// Of each half-edge: the one that runs the other way along the same edge, or no_id unless there is exactly one, and
+  /// none that runs the same way.
+  std::vector<std::uint32_t> twins;
+
+  std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
+  std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
+};
+
+/// Of each of the `among` triangles' half-edges its twin; others get none.
+std::vector<std::uint32_t> find_twins(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> among,
+                                      std::size_t vertices);
+
+/// Triangles whose corners at equal positions have one vertex: the lowest.
+std::vector<glm::uvec3> weld(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles);
+
+}  // namespace rayengine::surfaces
