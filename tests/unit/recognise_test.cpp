@@ -175,7 +175,7 @@ TEST(RecogniseNot, ASphereThatIsCoveredTwiceByOnePiece) {
   // Two shells, cut open along one edge each and sewn to each other there: closed, and everywhere facing outward.
   Mesh mesh = sphere(1, {0, 0, 0});
   const std::uint32_t count = static_cast<std::uint32_t>(mesh.positions.size());
-  append(mesh, mesh);
+  append(mesh, Mesh(mesh));
   const glm::uvec3 t = mesh.triangles[100];
   for (std::size_t i = 512; i < 1024; ++i)
     for (int k = 0; k < 3; ++k)  // both share an edge's vertices, so that four triangles meet there

@@ -43,7 +43,7 @@ class Comparison {
   }
 
   std::optional<Outline> ends() const {
-    const auto [low, high] = candidate_.clip;
+    const double low = candidate_.clip[0], high = candidate_.clip[1];
     const double middle = 0.5 * (low + high);
     double off = 0;
     const bool one_side_each = each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
