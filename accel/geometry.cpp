@@ -1,6 +1,8 @@
 #include "accel/geometry.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "accel/tracer.h"
 
@@ -39,6 +41,16 @@ Box transformed(const Box& box, const Affine& map) {
   return result;
 }
 
+/// First and last but one: meshes have their vertices in a row.
+std::pair<std::uint32_t, std::uint32_t> vertex_range(std::span<const glm::uvec3> triangles) {
+  std::uint32_t begin = no_id, end = 0;
+  for (const glm::uvec3& t : triangles) {
+    begin = std::min({begin, t.x, t.y, t.z});
+    end = std::max({end, t.x + 1, t.y + 1, t.z + 1});
+  }
+  return {std::min(begin, end), end};
+}
+
 }  // namespace
 
 std::size_t Geometry::bytes() const {
@@ -47,6 +59,23 @@ std::size_t Geometry::bytes() const {
                       bytes_of(groups) + bytes_of(objects);
   for (const auto& group : groups) total += group->bytes();
   return total;
+}
+
+std::uint32_t primitive_count(const Geometry& geometry, std::uint32_t object) {
+  const bool last = object + 1 == geometry.objects.size();
+  const std::uint32_t end = last ? geometry.primitive_count : geometry.objects[object + 1].first_primitive;
+  return end - geometry.objects[object].first_primitive;
+}
+
+Mesh mesh_of(const Geometry& geometry, std::uint32_t object) {
+  const auto first = geometry.triangles.begin() + geometry.objects[object].first;
+  Mesh mesh;
+  mesh.triangles.assign(first, first + primitive_count(geometry, object));
+  const auto [begin, end] = vertex_range(mesh.triangles);
+  for (std::uint32_t v = begin; v < end; ++v) mesh.positions.push_back(geometry.vertex(v));
+  if (!geometry.normals.empty()) mesh.normals.assign(geometry.normals.begin() + begin, geometry.normals.begin() + end);
+  for (glm::uvec3& t : mesh.triangles) t -= begin;
+  return mesh;
 }
 
 Box bounds(const Geometry& geometry, const Quadric& q) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "accel/box.h"
@@ -61,6 +62,12 @@ struct Geometry {
   std::size_t bytes() const;
 };
 
+/// A mesh object as it was given, in world space.
+Mesh mesh_of(const Geometry& geometry, std::uint32_t object);
+
+/// How many primitive ids an object takes: its triangles, a quadric's parts, or all that an instance places.
+std::uint32_t primitive_count(const Geometry& geometry, std::uint32_t object);
+
 Box bounds(const Geometry& geometry, const Quadric& quadric);
 Box bounds(const Geometry& geometry, const Instance& instance);
 
@@ -89,12 +96,20 @@ class GeometryBuilder {
   /// Places a group without copying it. Groups that hold instances are flattened to instances of what they hold.
   std::uint32_t add(std::shared_ptr<const Geometry> group, const Affine& to_world = {}, std::uint32_t material = 0);
 
+  /// Copies an object of another geometry bit for bit, with its material; groups are shared.
+  std::uint32_t add(const Geometry& from, std::uint32_t object);
+
   std::size_t object_count() const { return geometry_.objects.size(); }
   /// Ends the building; the builder is empty afterwards.
   std::shared_ptr<const Geometry> build();
 
  private:
   std::uint32_t begin(Object::Kind kind, std::size_t first, std::uint32_t material);
+  void copy_mesh(const Mesh& mesh, std::uint32_t copy);
+  void copy_quadric(const Geometry& from, const Object& object, std::uint32_t copy);
+  void copy_instances(const Geometry& from, std::uint32_t object, std::uint32_t copy);
+  void place(const glm::dvec3& vertex);
+  void place(std::span<const glm::uvec3> triangles, std::uint32_t base, std::uint32_t object);
   void place(const Instance& instance);
   std::uint32_t group_index(const std::shared_ptr<const Geometry>& group);
 

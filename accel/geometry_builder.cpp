@@ -82,19 +82,12 @@ std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, con
   const WorldToObject to_object = inverse(to_world);
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
   const std::uint32_t object = begin(Object::Kind::mesh, geometry_.triangles.size(), material);
-  for (const glm::dvec3& p : mesh.positions) {
-    const glm::dvec3 world = to_world.point(p);
-    exact_ = exact_ && is_float(world);
-    geometry_.vertices.emplace_back(world);
-    geometry_.exact_vertices.push_back(world);
-    geometry_.bounds.add(world);
-  }
+  for (const glm::dvec3& p : mesh.positions) place(to_world.point(p));
   if (!mesh.normals.empty()) {
     geometry_.normals.resize(base);
     for (const glm::vec3& n : mesh.normals) geometry_.normals.push_back(world_normal(to_object, n));
   }
-  for (const glm::uvec3& t : mesh.triangles) geometry_.triangles.push_back(t + base);
-  geometry_.triangle_object.resize(geometry_.triangles.size(), object);
+  place(mesh.triangles, base, object);
   geometry_.primitive_count += static_cast<std::uint32_t>(mesh.triangles.size());
   return object;
 }
@@ -127,6 +120,18 @@ std::uint32_t GeometryBuilder::group_index(const std::shared_ptr<const Geometry>
   return static_cast<std::uint32_t>(geometry_.groups.size() - 1);
 }
 
+void GeometryBuilder::place(const glm::dvec3& vertex) {
+  exact_ = exact_ && is_float(vertex);
+  geometry_.vertices.emplace_back(vertex);
+  geometry_.exact_vertices.push_back(vertex);
+  geometry_.bounds.add(vertex);
+}
+
+void GeometryBuilder::place(std::span<const glm::uvec3> triangles, std::uint32_t base, std::uint32_t object) {
+  for (const glm::uvec3& t : triangles) geometry_.triangles.push_back(t + base);
+  geometry_.triangle_object.resize(geometry_.triangles.size(), object);
+}
+
 void GeometryBuilder::place(const Instance& instance) {
   geometry_.bounds.add(bounds(geometry_, instance));
   geometry_.instances.push_back(instance);
@@ -144,6 +149,50 @@ std::uint32_t GeometryBuilder::add(std::shared_ptr<const Geometry> group, const 
   }
   geometry_.primitive_count += group->primitive_count;
   return object;
+}
+
+std::uint32_t GeometryBuilder::add(const Geometry& from, std::uint32_t object) {
+  const Object& o = from.objects[object];
+  const std::size_t first = o.kind == Object::Kind::mesh      ? geometry_.triangles.size()
+                            : o.kind == Object::Kind::quadric ? geometry_.quadrics.size()
+                                                              : geometry_.instances.size();
+  const std::uint32_t copy = begin(o.kind, first, o.material);
+  if (o.kind == Object::Kind::mesh) copy_mesh(mesh_of(from, object), copy);
+  if (o.kind == Object::Kind::quadric) copy_quadric(from, o, copy);
+  if (o.kind == Object::Kind::instance) copy_instances(from, object, copy);
+  geometry_.primitive_count += rayengine::primitive_count(from, object);
+  return copy;
+}
+
+void GeometryBuilder::copy_mesh(const Mesh& mesh, std::uint32_t copy) {
+  const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
+  for (const glm::dvec3& p : mesh.positions) place(p);
+  if (!mesh.normals.empty()) {
+    geometry_.normals.resize(base);
+    geometry_.normals.insert(geometry_.normals.end(), mesh.normals.begin(), mesh.normals.end());
+  }
+  place(mesh.triangles, base, copy);
+}
+
+void GeometryBuilder::copy_quadric(const Geometry& from, const Object& object, std::uint32_t copy) {
+  Quadric q = from.quadrics[object.first];
+  q.object = copy;
+  if (q.type == QuadricType::general) {
+    geometry_.forms.push_back(from.forms[q.form]);
+    q.form = static_cast<std::uint32_t>(geometry_.forms.size() - 1);
+  }
+  geometry_.quadrics.push_back(q);
+  geometry_.bounds.add(bounds(geometry_, q));
+}
+
+void GeometryBuilder::copy_instances(const Geometry& from, std::uint32_t object, std::uint32_t copy) {
+  for (std::size_t i = from.objects[object].first; i < from.instances.size() && from.instances[i].object == object;
+       ++i) {
+    Instance instance = from.instances[i];
+    instance.group = group_index(from.groups[instance.group]);
+    instance.object = copy;
+    place(instance);
+  }
 }
 
 std::shared_ptr<const Geometry> GeometryBuilder::build() {

@@ -92,9 +92,7 @@ class Judge {
   bool names_something(const Hit& hit) const {
     if (!hit.hit()) return true;
     if (hit.object >= geometry_.objects.size()) return false;
-    const bool last = hit.object + 1 == geometry_.objects.size();
-    const std::uint32_t end = last ? geometry_.primitive_count : geometry_.objects[hit.object + 1].first_primitive;
-    return hit.primitive < end - geometry_.objects[hit.object].first_primitive;
+    return hit.primitive < primitive_count(geometry_, hit.object);
   }
 
   void count_difference(std::size_t i, const Hit& hit, const Hit& exact) {

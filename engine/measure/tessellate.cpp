@@ -163,21 +163,6 @@ Parts parts_of(const Geometry& geometry, const Quadric& q, int level) {
   return body;
 }
 
-/// A mesh object as it was given.
-Mesh mesh_of(const Geometry& geometry, std::uint32_t object) {
-  const Object& o = geometry.objects[object];
-  const bool last = object + 1 == geometry.objects.size();
-  const std::uint32_t end = last ? geometry.primitive_count : geometry.objects[object + 1].first_primitive;
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < end - o.first_primitive; ++i) {
-    const glm::uvec3& triangle = geometry.triangles[o.first + i];
-    const auto at = static_cast<std::uint32_t>(mesh.positions.size());
-    for (int k = 0; k < 3; ++k) mesh.positions.push_back(geometry.vertex(triangle[k]));
-    mesh.triangles.push_back({at, at + 1, at + 2});
-  }
-  return mesh;
-}
-
 }  // namespace
 
 std::optional<Tessellation> tessellate(const Geometry& geometry, int level) {

@@ -39,13 +39,14 @@ std::vector<std::string> channel_names(std::span<const Aov> aovs) {
   return names;
 }
 
-void write_aovs(std::span<const Aov> aovs, const Geometry& geometry, const Ray& ray, const Hit& hit, float* out) {
+void write_aovs(std::span<const Aov> aovs, const Geometry& geometry, const Ray& ray, const Hit& hit,
+                std::uint32_t object, float* out) {
   const Surface surface = hit.hit() ? surface_at(geometry, ray, hit) : Surface{};
   const double depth = hit.hit() ? glm::dot(surface.position - ray.origin, ray.direction) : infinity;
   for (const Aov aov : aovs) switch (aov) {
       case Aov::depth: out = put(out, depth); break;
       case Aov::normal: out = put(out, surface.shading_normal); break;
-      case Aov::object: out = put(out, id_value(hit.object)); break;
+      case Aov::object: out = put(out, id_value(object)); break;
       case Aov::primitive: out = put(out, id_value(hit.primitive)); break;
       case Aov::position: out = put(out, surface.position); break;
       case Aov::error: out = put(out, hit.error); break;

@@ -65,6 +65,7 @@ void TileRenderer::trace_aovs(Image& image) {
   aov_ray_count_ += aov_rays_.size();
   for (std::size_t i = 0; i < pixels_.size(); ++i)
     write_aovs(options_.aovs, picture_.geometry, aov_rays_[i], aov_hits_[i],
+               object_number(picture_.object_numbers, aov_hits_[i].object),
                image.pixel(pixels_[i].x, pixels_[i].y) + color_channels);
 }
 

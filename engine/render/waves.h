@@ -23,6 +23,7 @@ struct Picture {
   Limits limits;
   int depth;  ///< bounces after the primary ray
   const PhotonMap* caustics = nullptr;
+  std::span<const std::uint32_t> object_numbers = {};  ///< as in Scene
 };
 
 /// Traces the trees of rays that grow from primary rays, level by level in waves (Whitted, "An improved illumination

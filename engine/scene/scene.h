@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,9 +57,16 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Material> materials{Material{}};
   std::shared_ptr<const Geometry> geometry;
+  /// The caller's numbers of the geometry's objects, where those are others than their place (see plan/model.h).
+  std::vector<std::uint32_t> object_numbers;
   /// Lines for the user: repairs made while loading, a default camera or light that was put in.
   std::vector<std::string> notes;
 };
+
+/// What the caller knows a hit's object as, by Scene::object_numbers; no_id stays.
+inline std::uint32_t object_number(std::span<const std::uint32_t> numbers, std::uint32_t object) {
+  return numbers.empty() || object == no_id ? object : numbers[object];
+}
 
 /// Moves a camera to where it frames `bounds` from a corner above; unbounded sides count as the unit box.
 Camera framing_camera(const Box& bounds, Camera camera = {});
