@@ -32,7 +32,8 @@ std::shared_ptr<const Geometry> assorted() {
               Affine::translate({4, 4, 4}));
   builder.add(group, Affine::translate({-3, 3, 0}));
   builder.add(tetrahedron({0.1, 0, 0}), 1, placed);
-  builder.add(QuadricShape{QuadricType::saddle}, 2, Affine::translate({0, 2, 0}) * placed);
+  builder.add(QuadricShape{QuadricType::saddle, false, {}, {}, Box{glm::dvec3(-1), glm::dvec3(.8)}}, 2,
+              Affine::translate({0, 2, 0}) * placed);
   builder.add(group, Affine::translate({0, -2, 0.1}) * placed, 3);
   return builder.build();
 }
