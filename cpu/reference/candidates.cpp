@@ -13,17 +13,18 @@ namespace {
 
 int sign(quad x) { return x < 0 ? -1 : x > 0; }
 
-Fraction exact_t(const Ray& ray, const Candidate& c) {
+Root exact_t(const Ray& ray, const Candidate& c) {
   const auto world = make_line<Exact>(ray);
-  return exact_t(c.instance ? transformed(world, c.instance->to_group) : world, *c.geometry, c.index);
+  const auto line = c.instance ? transformed(world, c.instance->to_group) : world;
+  return c.is_triangle ? exact_t(line, *c.geometry, c.index)
+                       : exact_t(line, *c.geometry, c.geometry->quadrics[c.index], c.at);
 }
 
 /// The sign of candidate's t - bound.
 int compare_t(const Ray& ray, const Candidate& c, double bound) {
   const quad difference = c.at.t - bound;
-  if (!c.is_triangle || std::isinf(bound) || size_of(difference) > c.at.error) return sign(difference);
-  const Fraction t = exact_t(ray, c);
-  return (t.numerator - Exact(bound) * t.denominator).sign() * t.denominator.sign();
+  if (std::isinf(bound) || size_of(difference) > c.at.error) return sign(difference);
+  return compare(exact_t(ray, c), Exact(bound), Exact(1));
 }
 
 /// Whether two triangles, of which scanned meshes have some, are one: then t is, too.
@@ -56,11 +57,11 @@ bool in_interval(const Ray& ray, const Candidate& c) {
 
 int compare_t(const Ray& ray, const Candidate& a, const Candidate& b) {
   const quad difference = a.at.t - b.at.t;
-  if (!a.is_triangle || !b.is_triangle || size_of(difference) > a.at.error + b.at.error) return sign(difference);
-  if (same_corners(a, b)) return 0;
-  const Fraction s = exact_t(ray, a), t = exact_t(ray, b);
-  return (s.numerator * t.denominator - t.numerator * s.denominator).sign() * s.denominator.sign() *
-         t.denominator.sign();
+  if (size_of(difference) > a.at.error + b.at.error) return sign(difference);
+  const bool triangles = a.is_triangle && b.is_triangle;
+  if (triangles && same_corners(a, b)) return 0;
+  const Root s = exact_t(ray, a), t = exact_t(ray, b);
+  return triangles || (is_moderate(s) && is_moderate(t)) ? compare(s, t) : sign(difference);
 }
 
 bool before(const Ray& ray, const Candidate& a, const Candidate& b) {
@@ -69,7 +70,8 @@ bool before(const Ray& ray, const Candidate& a, const Candidate& b) {
 }
 
 bool owns(const Ray& ray, const Candidate& c, const ClosedMeshes& closed) {
-  if (!c.is_triangle || !closed.contains(*c.geometry, c.geometry->triangle_object[c.index])) return true;
+  if (!c.is_triangle) return c.at.counts;
+  if (!closed.contains(*c.geometry, c.geometry->triangle_object[c.index])) return true;
   const LocalRay world(ray);
   return c.instance ? owns_crossing(LocalRay(world, c.instance->to_group), *c.geometry, c.index)
                     : owns_crossing(world, *c.geometry, c.index);

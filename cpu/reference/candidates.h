@@ -18,18 +18,19 @@ struct Candidate {
   bool is_triangle = false;
 };
 
-/// Whether a crossing of a triangle or quadric lies in (tmin, tmax]; exact for triangles.
+/// Whether a crossing of a triangle or quadric lies in (tmin, tmax], exactly.
 bool in_interval(const Ray& ray, const Candidate& candidate);
 
-/// Negative when `a` comes first along the ray, 0 when both have the same t. Between triangles the answer is exact;
-/// where a quadric takes part it is that of 113 bits.
+/// Negative when `a` comes first along the ray, 0 when both have the same t. Exact; but where a quadric takes part, and
+/// a number on the way is beyond 2^1000 or below 2^-1000, 113 bits tell.
 int compare_t(const Ray& ray, const Candidate& a, const Candidate& b);
 
 /// compare_t, then object ids, then primitive ids.
 bool before(const Ray& ray, const Candidate& a, const Candidate& b);
 
 /// Whether the hit counts among all hits. Of closed meshes every crossing counts once, though it be at an edge or a
-/// vertex (see owns_crossing); of others every triangle that is touched.
+/// vertex (see owns_crossing), of capped quadrics though it be at a rim (see cross_quadric); of other meshes every
+/// triangle that is touched.
 bool owns(const Ray& ray, const Candidate& candidate, const ClosedMeshes& closed);
 
 /// The answer, rounded to Hit's types, with a bound that covers the rounding of t.

@@ -1,5 +1,8 @@
 #include "cpu/reference/exact.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rayengine::reference {
 
 void Exact::add(quad x) {
@@ -12,6 +15,14 @@ void Exact::add(quad x) {
   }
   terms_.resize(kept);
   if (x != 0) terms_.push_back(x);
+}
+
+bool Exact::within(int exponent) const {
+  const auto fits = [exponent](quad term) {
+    const long double size = std::fabs(static_cast<long double>(term));
+    return size >= std::ldexp(1.0L, -exponent) && size <= std::ldexp(1.0L, exponent);
+  };
+  return std::all_of(terms_.begin(), terms_.end(), fits);
 }
 
 quad Exact::rounded() const {

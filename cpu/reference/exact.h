@@ -20,6 +20,8 @@ class Exact {
   explicit Exact(double x) { add(x); }
 
   int sign() const { return terms_.empty() ? 0 : terms_.back() < 0 ? -1 : 1; }
+  /// Whether all of its terms are from 2^-exponent to 2^exponent.
+  bool within(int exponent) const;
   /// The value rounded to a quad, within two units in its last place.
   quad rounded() const;
 

@@ -133,6 +133,8 @@ struct Crossing {
   quad t;
   long double error;            ///< bound on |t - exact t|
   std::uint32_t primitive = 0;  ///< within its object
+  bool rising = false;          ///< of a quadric's side: whether its form rises there, that is, the ray leaves
+  bool counts = true;           ///< among all hits; see cross_quadric
 };
 
 }  // namespace rayengine::reference

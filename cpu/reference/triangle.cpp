@@ -70,9 +70,9 @@ std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geom
   return Crossing{t, (n.error + size_of(t) * d.error) / size_of(d.value) + quad_rounding * size_of(t)};
 }
 
-Fraction exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle) {
+Root exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle) {
   const auto [n, d] = plane_t(ray, corners(ray.origin, geometry, triangle));
-  return {n, d};
+  return fraction(n, d);
 }
 
 std::array<double, 2> barycentrics(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle) {

@@ -4,6 +4,7 @@
 
 #include "accel/geometry.h"
 #include "cpu/reference/formulas.h"
+#include "cpu/reference/root.h"
 
 namespace rayengine::reference {
 
@@ -19,11 +20,8 @@ std::optional<Crossing> cross_triangle(const LocalRay& ray, const Geometry& geom
 /// Graphics 9, 1990).
 bool owns_crossing(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);
 
-/// t of the triangle's plane as a fraction without rounding.
-struct Fraction {
-  Exact numerator, denominator;
-};
-Fraction exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle);
+/// t of the triangle's plane without rounding.
+Root exact_t(const Line<Exact>& ray, const Geometry& geometry, std::uint32_t triangle);
 
 /// Barycentrics of the second and third vertex where the ray passes the triangle.
 std::array<double, 2> barycentrics(const LocalRay& ray, const Geometry& geometry, std::uint32_t triangle);

@@ -68,7 +68,12 @@ void add_roots(const ExactRay& ray, const Solid& solid, std::vector<Place>& plac
   const auto& [o, d] = ray;
   const Dyadic a = product(solid.matrix, d, 0, d, 0), b = product(solid.matrix, o, 1, d, 0),
                c = product(solid.matrix, o, 1, o, 1);
-  if ((b * b - a * c).sign() <= 0) return;
+  const int discriminant = (b * b - a * c).sign();
+  if (discriminant == 0 && a.sign() != 0) {
+    places.push_back(fraction(-b, a, 0));
+    places.back().is_hit = false;
+  }
+  if (discriminant <= 0) return;
   if (a.sign() == 0) return places.push_back(fraction(-c, b + b, 0));
   for (const bool upper : {false, true}) {
     Place root;
@@ -93,6 +98,50 @@ void add_plane(const ExactRay& ray, double height, const QuadricMatrix* inside, 
     if ((quadratic + (linear + linear) * t.q + constant * t.q * t.q).sign() > 0) return;
   }
   places.push_back(t);
+}
+
+/// Whether the line's point at t is in the solid, and not on its surface.
+bool is_inside(const ExactRay& ray, const Solid& solid, const Dyadic& t) {
+  const auto& [o, d] = ray;
+  const Point at{o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
+  return product(solid.matrix, at, 1, at, 1).sign() < 0 && (at[2] - solid.low.z).sign() > 0 &&
+         (at[2] - solid.high.z).sign() < 0;
+}
+
+Dyadic before(const Place& place) {
+  Dyadic t = -1;
+  while (place.compare(t, 1) <= 0) t = t + t;
+  return t;
+}
+Dyadic after(const Place& place) {
+  Dyadic t = 1;
+  while (place.compare(t, 1) >= 0) t = t + t;
+  return t;
+}
+Dyadic between(const Place& a, const Place& b) {
+  for (Dyadic low = before(a), high = after(b);;) {
+    const Dyadic middle = Dyadic(0.5) * (low + high);
+    if (a.compare(middle, 1) >= 0)
+      low = middle;
+    else if (b.compare(middle, 1) <= 0)
+      high = middle;
+    else
+      return middle;
+  }
+}
+
+/// Leaves of sorted places the first hit at each t where the line passes the solid's surface.
+std::vector<Place> passages(const ExactRay& ray, const Solid& solid, const std::vector<Place>& places) {
+  std::vector<Place> found;
+  bool inside = !places.empty() && is_inside(ray, solid, before(places.front()));
+  for (auto at = places.begin(), next = at; at != places.end(); at = next) {
+    next = std::find_if(at, places.end(), [&](const Place& p) { return p.compare(*at) != 0; });
+    const bool beyond = is_inside(ray, solid, next != places.end() ? between(*at, *next) : after(*at));
+    const auto hit = std::find_if(at, next, [](const Place& p) { return p.is_hit; });
+    if (beyond != inside && hit != next) found.push_back(*hit);
+    inside = beyond;
+  }
+  return found;
 }
 
 void sort(std::vector<Place>& places) {
@@ -152,6 +201,8 @@ std::vector<Place> exact_hits(const Ray& ray, const Geometry& geometry, const Qu
         add_plane(local, height, &solid.matrix, cap, places);
     }
   sort(places);
+  if (quadric.capped) return passages(local, solid, places);
+  std::erase_if(places, [](const Place& place) { return !place.is_hit; });
   return places;
 }
 

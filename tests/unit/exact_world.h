@@ -19,6 +19,7 @@ ExactRay exact_ray(const Ray& ray, const WorldToObject& map);
 
 /// Where a ray meets something: a fraction, or a root of a t^2 + 2 b t + c with a > 0.
 struct Place {
+  bool is_hit = true;  ///< false where two roots are one: a miss by convention, even where it leads into a cone
   bool is_root = false;
   bool upper = false;   ///< of the two roots
   Dyadic p = 0, q = 1;  ///< the fraction p / q, q > 0
@@ -31,7 +32,8 @@ struct Place {
   int compare(const Place& other) const;
 };
 
-/// All hits on a quadric by ascending t; those at equal t by primitive.
+/// All hits on a quadric by ascending t; those at equal t by primitive. Of a capped one, the first at each t between
+/// whose two sides the line changes from inside to outside.
 std::vector<Place> exact_hits(const Ray& ray, const Geometry& geometry, const Quadric& quadric);
 /// The same on all triangles.
 std::vector<Place> exact_hits(const Ray& ray, const Geometry& geometry);

@@ -10,7 +10,7 @@
 namespace rayengine {
 namespace {
 
-constexpr int rays_each = 2500, rays_on_triangles = 500;
+constexpr int rays_each = 2500, few_rays = 500;
 
 struct Solid {
   std::string name;
@@ -58,12 +58,29 @@ void expect_exact(const std::vector<Hit>& hits, const std::vector<test::Place>& 
   }
 }
 
+/// A ray cut at its first place as a double: the hit at tmin is out, the one at tmax is in, whatever doubles make of
+/// it.
+void expect_exact_ends(Tracer& tracer, Ray ray, const std::vector<test::Place>& places) {
+  if (places.empty()) return;
+  const double t = all(tracer, ray).front().t;  // the nearest double, on either side of the place
+  ray.tmin = t;
+  const bool beyond = places.front().compare(t, 1) > 0;
+  const std::vector<Hit> later = all(tracer, ray);
+  EXPECT_EQ(!later.empty() && later.front().t == t && later.front().primitive == places.front().primitive, beyond);
+  ray.tmin = -infinity, ray.tmax = t;
+  EXPECT_EQ(!all(tracer, ray).empty(), !beyond);
+}
+
 class ReferenceExactly : public testing::TestWithParam<Solid> {
  protected:
-  void run(const Affine& map) {
+  static std::shared_ptr<const Geometry> placed(const Affine& map) {
     GeometryBuilder builder;
     builder.add(GetParam().shape, 0, map);
-    const auto geometry = builder.build();
+    return builder.build();
+  }
+
+  static void run(const Affine& map) {
+    const auto geometry = placed(map);
     const auto tracer = make_reference_tracer(geometry);
     std::size_t met = 0;
     for (std::uint64_t i = 0; i < rays_each; ++i) {
@@ -87,6 +104,15 @@ TEST_P(ReferenceExactly, PlacedWithRounding) {
   run(Affine::translate({.1, -.2, .3}) * Affine::rotate({1, 2, 3}, 40) * Affine::scale({1.5, 1, .7}));
 }
 
+TEST_P(ReferenceExactly, EndsOfTheInterval) {
+  for (const Affine& map : {Affine{}, Affine::rotate({1, 2, 3}, 40)}) {
+    const auto geometry = placed(map);
+    const auto tracer = make_reference_tracer(geometry);
+    for (std::uint64_t i = 0; i < few_rays; ++i)
+      expect_exact_ends(*tracer, small_ray(i), test::exact_hits(small_ray(i), *geometry, geometry->quadrics[0]));
+  }
+}
+
 /// Triangles with corners at halves, so that rays pass edges and vertices, lie in planes, and meet several at once.
 std::shared_ptr<const Geometry> many_triangles() {
   Mesh mesh;
@@ -105,7 +131,7 @@ TEST(ReferenceExactly, TrianglesOfWholeNumbers) {
   const auto geometry = many_triangles();
   const auto tracer = make_reference_tracer(geometry);
   std::size_t ties = 0;
-  for (std::uint64_t i = 0; i < rays_on_triangles; ++i) {
+  for (std::uint64_t i = 0; i < few_rays; ++i) {
     SCOPED_TRACE("ray " + std::to_string(i));
     const Ray ray = small_ray(i);
     const std::vector<test::Place> places = test::exact_hits(ray, *geometry);
@@ -122,23 +148,11 @@ TEST(ReferenceExactly, TrianglesOfWholeNumbers) {
   EXPECT_GT(ties, 100u);
 }
 
-/// A ray cut at what a fraction of it says: the hit at tmin is out, the one at tmax is in, whatever doubles make of it.
 TEST(ReferenceExactly, EndsOfTheIntervalOnTriangles) {
   const auto geometry = many_triangles();
   const auto tracer = make_reference_tracer(geometry);
-  for (std::uint64_t i = 0; i < rays_on_triangles; ++i) {
-    Ray ray = small_ray(i);
-    const std::vector<test::Place> places = test::exact_hits(ray, *geometry);
-    if (places.empty()) continue;
-    const double t = all(*tracer, ray).front().t;  // the nearest double, on either side of the fraction
-    ray.tmin = t;
-    const bool beyond = places.front().compare(t, 1) > 0;
-    const std::vector<Hit> later = all(*tracer, ray);
-    EXPECT_EQ(!later.empty() && later.front().t == t && later.front().primitive == places.front().primitive, beyond)
-        << "ray " << i;
-    ray.tmin = -infinity, ray.tmax = t;
-    EXPECT_EQ(!all(*tracer, ray).empty(), !beyond) << "ray " << i;
-  }
+  for (std::uint64_t i = 0; i < few_rays; ++i)
+    expect_exact_ends(*tracer, small_ray(i), test::exact_hits(small_ray(i), *geometry));
 }
 
 }  // namespace
