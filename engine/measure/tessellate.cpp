@@ -49,9 +49,10 @@ void revolve(Parts& body, const std::vector<Ring>& rings, std::uint32_t segments
   }
 }
 
+/// Facing up, but for a lower cap, which faces out of its solid.
 void add_disk(Parts& body, const Ring& rim, std::uint32_t part, std::uint32_t segments) {
-  const std::uint32_t first = add_ring(body.mesh, rim, segments);
-  for (std::uint32_t k = 1; k + 1 < segments; ++k) body.add({first, first + k, first + k + 1}, part);
+  const std::uint32_t first = add_ring(body.mesh, rim, segments), turn = part == 1;
+  for (std::uint32_t k = 1; k + 1 < segments; ++k) body.add({first, first + k + turn, first + k + 1 - turn}, part);
 }
 
 /// The surface's distance from the axis at height z.

@@ -70,24 +70,32 @@ Extent extent(const QuadricShape& shape) {
   return {};
 }
 
+double radius_at(QuadricType type, double z) {
+  switch (type) {
+    case cylinder: return 1;
+    case cone: return std::abs(z);
+    case paraboloid: return std::sqrt(std::max(z, 0.));
+    case hyperboloid1: return std::sqrt(1 + z * z);
+    default: return std::sqrt(std::max(z * z - 1, 0.));
+  }
+}
+
+/// The point of a cap above or below, or its rim's nearest.
+glm::dvec3 on_cap(QuadricType type, double end, const glm::dvec3& p) {
+  const double shrink = std::min(1., radius_at(type, end) / std::hypot(p.x, p.y));
+  return {shrink * p.x, shrink * p.y, end};
+}
+
 /// The point of the same height, or of the end's, in the same direction from the axis.
 glm::dvec3 across(QuadricType type, const Extent& e, const glm::dvec3& p) {
   const double z = std::clamp(p.z, e.low, e.high), at = std::hypot(p.x, p.y);
-  const double radius = type == cylinder       ? 1
-                        : type == cone         ? std::abs(z)
-                        : type == paraboloid   ? std::sqrt(std::max(z, 0.))
-                        : type == hyperboloid1 ? std::sqrt(1 + z * z)
-                                               : std::sqrt(std::max(z * z - 1, 0.));
+  const double radius = radius_at(type, z);
   return {radius / at * p.x, radius / at * p.y, z};
 }
 
 /// The point above or below, or above or below the nearest point of the rim.
 glm::dvec3 along(QuadricType type, const Extent& e, const glm::dvec3& p) {
-  const double rim = type == disk           ? 1
-                     : type == paraboloid   ? std::sqrt(e.high)
-                     : type == hyperboloid2 ? std::sqrt(e.high * e.high - 1)
-                     : type == cone         ? e.high
-                                            : infinity;
+  const double rim = type == disk ? 1 : type == plane || type == saddle ? infinity : radius_at(type, e.high);
   const double shrink = std::min(1., rim / std::hypot(p.x, p.y));
   const double x = std::clamp(shrink * p.x, -e.half.x, e.half.x), y = std::clamp(shrink * p.y, -e.half.y, e.half.y);
   const double rr = x * x + y * y;
@@ -111,6 +119,8 @@ double to_quadric(const RecognisedQuadric& quadric, const glm::dvec3& p) {
     least = far(across(type, e, q));
   if (type != cylinder && type != hyperboloid1 && !(type == cone && e.low > 0))
     least = std::fmin(least, far(along(type, e, q)));
+  if (quadric.shape.capped)
+    for (const double end : {e.low, e.high}) least = std::fmin(least, far(on_cap(type, end, q)));
   return least;
 }
 

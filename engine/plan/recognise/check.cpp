@@ -9,15 +9,12 @@
 namespace rayengine::surfaces {
 namespace {
 
-/// Tessellations have their vertices on the surface; where some are further off than this share of the tolerance the
-/// surface is another one, or noisy.
-constexpr double vertex_share = 0.25;
+/// Tessellations have their vertices on the surface. Where some are further off than this share of the tolerance, or of
+/// how far the quadric bends, the surface is another one, or noisy.
+constexpr double vertex_share = 0.25, vertex_noise = 1e-3;
 
 /// What rounding may do to a sign in object space, where everything is about 1.
 constexpr double sign_noise = 1e-12;
-
-/// Lengths of axes beyond this, or its inverse, make volumes that are no numbers, and transforms without an inverse.
-constexpr double smallest_length = 1e-90;
 
 using Triangle = std::array<glm::dvec3, 3>;
 
@@ -57,16 +54,17 @@ class Check {
         lengths_(lengths(candidate.to_world)) {}
 
   std::optional<double> run() {
-    triangles_.reserve(region_.triangles().size());
-    for (const std::uint32_t t : region_.triangles()) {
+    triangles_.reserve(region_.triangles.size());
+    for (const std::uint32_t t : region_.triangles) {
       triangles_.push_back(corners(t));
       if (!faces_along(triangles_.back())) return {};
       measure(triangles_.back());
       if (!(along_fibres(deviation_.most) <= tolerance_)) return {};
     }
-    if (!(along_fibres(deviation_.corners) <= vertex_share * tolerance_)) return {};
+    if (!(along_fibres(deviation_.corners) <= vertex_share * tolerance_ && deviation_.corners <= vertex_noise))
+      return {};
     const std::optional<Outline> outline = compare_outline(region_, candidate_, map_);
-    if (!outline || !covered_once(*outline)) return {};
+    if (!outline || outline->vertices > vertex_noise || !covered_once(*outline)) return {};
     const double residual = along_fibres(deviation_.most) + outline->distance + rounding();
     return residual <= tolerance_ ? std::optional(residual) : std::nullopt;
   }
@@ -87,25 +85,23 @@ class Check {
     }
   }
 
+  bool on_surface(double corners) const {
+    const double bend = std::min(1., 1 - std::cos(candidate_.half_angle));
+    return along_fibres(corners) <= vertex_share * tolerance_ && corners <= vertex_noise * bend;
+  }
+
   /// What the arithmetic here may be off, and whoever places the quadric.
   double rounding() const {
     const glm::dvec3& o = candidate_.to_world.origin;
     return 16 * std::numeric_limits<double>::epsilon() * (glm::length(o) + glm::length(lengths_));
   }
 
-  /// The fibre through a point, toward the outside.
-  glm::dvec3 fibre(const glm::dvec3& p) const {
-    switch (fibres_) {
-      case Fibres::central: return p;
-      case Fibres::radial: return {p.x, p.y, 0};
-      default: return {0, 0, candidate_.type == QuadricType::plane || candidate_.type == QuadricType::disk ? 1 : -1};
-    }
-  }
+  glm::dvec3 along(const glm::dvec3& p) const { return fibre(candidate_.type, fibres_, p); }
 
   // A fibre's direction is linear in the point, and so is this product: it is smallest at a corner.
   bool faces_along(const Triangle& t) const {
     const glm::dvec3 n = normal(t);
-    return smallest(t, [&](const glm::dvec3& p) { return glm::dot(n, fibre(p)); }) >= -sign_noise;
+    return smallest(t, [&](const glm::dvec3& p) { return glm::dot(n, along(p)); }) >= -sign_noise;
   }
 
   void measure(const Triangle& t) {
@@ -175,12 +171,12 @@ class Check {
     double most = sign_noise;
     for (const Triangle& t : triangles_) {
       const glm::dvec3 m = (t[0] + t[1] + t[2]) / 3.;
-      const double seen = glm::dot(normal(t), fibre(m));
+      const double seen = glm::dot(normal(t), along(m));
       if (seen > most && outline.contains(m)) best = &t, most = seen;
     }
     if (!best) return false;
-    const glm::dvec3 m = ((*best)[0] + (*best)[1] + (*best)[2]) / 3., along = fibre(m);
-    return std::ranges::count_if(triangles_, [&](const Triangle& t) { return meets(t, m, along); }) == 1;
+    const glm::dvec3 m = ((*best)[0] + (*best)[1] + (*best)[2]) / 3., line = along(m);
+    return std::ranges::count_if(triangles_, [&](const Triangle& t) { return meets(t, m, line); }) == 1;
   }
 
   /// Whether a line meets a triangle that faces along it, its edges included.
@@ -203,9 +199,7 @@ class Check {
 }  // namespace
 
 std::optional<double> proven_residual(const Region& region, const Candidate& candidate, double tolerance) {
-  const glm::dvec3 size = lengths(candidate.to_world);
-  for (int i = 0; i < 3; ++i)
-    if (!(size[i] > smallest_length && size[i] < 1 / smallest_length)) return {};
+  if (!is_invertible(candidate.to_world)) return {};
   return Check(region, candidate, tolerance).run();
 }
 

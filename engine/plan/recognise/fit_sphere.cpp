@@ -1,49 +1,23 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "engine/plan/recognise/cloud.h"
 #include "engine/plan/recognise/fit.h"
 #include "engine/plan/recognise/round_number.h"
 #include "engine/plan/recognise/symmetric.h"
 
 namespace rayengine::surfaces {
-namespace {
-
-template <class Visit>
-void each_corner(const Region& region, Visit visit) {
-  for (const std::uint32_t t : region.triangles())
-    for (int k = 0; k < 3; ++k) visit(region.corner(t, k));
-}
-
-struct Cloud {
-  glm::dvec3 mean{0};
-  double extent = 0;  ///< largest distance from the mean along an axis
-};
-
-Cloud cloud(const Region& region) {
-  Cloud c;
-  const glm::dvec3 near = region.corner(region.triangles()[0], 0);  // differences from here lose nothing
-  glm::dvec3 sum(0);
-  Box box;
-  each_corner(region, [&](const glm::dvec3& p) { sum += p - near, box.add(p); });
-  c.mean = near + sum / (3. * static_cast<double>(region.triangles().size()));
-  const glm::dvec3 reach = glm::max(box.upper - c.mean, c.mean - box.lower);
-  c.extent = std::max({reach.x, reach.y, reach.z});
-  return c;
-}
-
-}  // namespace
-
 // |p|^2 = 2 c.p + k is linear in the centre c and in k = r^2 - |c|^2; about the mean of the points k separates. Source:
 // Coope, "Circle fitting by linear and nonlinear least squares" (1993), in three dimensions.
 std::optional<Candidate> fit_sphere(const Region& region) {
-  const Cloud points = cloud(region);
-  if (!(points.extent > 0 && std::isfinite(points.extent))) return {};
-  const double per_extent = 1 / points.extent, count = 3. * static_cast<double>(region.triangles().size());
+  const Cloud points(region);
+  if (!points.usable()) return {};
+  const double count = 3. * static_cast<double>(region.triangles.size());
   Matrix<3> m{};
   Vector<3> b{};
   double squares = 0;
   each_corner(region, [&](const glm::dvec3& at) {
-    const glm::dvec3 p = (at - points.mean) * per_extent;
+    const glm::dvec3 p = points.local(at);
     const double size = glm::dot(p, p);
     squares += size;
     add_outer<3>(m, {p.x, p.y, p.z});
@@ -55,10 +29,10 @@ std::optional<Candidate> fit_sphere(const Region& region) {
   const double radius = std::sqrt(squares / count + glm::dot(center, center));
   double noise = std::numeric_limits<double>::epsilon();
   each_corner(region, [&](const glm::dvec3& at) {
-    noise = std::max(noise, std::abs(glm::length((at - points.mean) * per_extent - center) - radius));
+    noise = std::max(noise, std::abs(glm::length(points.local(at) - center) - radius));
   });
   Candidate found;
-  found.to_world.origin = points.mean + points.extent * center;
+  found.to_world.origin = points.world(center);
   const double allowance = noise * points.extent;
   for (int i = 0; i < 3; ++i) found.to_world.origin[i] = round_number(found.to_world.origin[i], allowance);
   found.to_world.linear = glm::dmat3(round_number(points.extent * radius, allowance));

@@ -19,6 +19,7 @@ class Comparison {
       case QuadricType::saddle: return rectangle();
       default: break;
     }
+    if (!is_whole_turn(candidate_)) return sector();
     return fibres_of(candidate_.type, candidate_.clip[0]) == Fibres::radial ? ends() : rim();
   }
 
@@ -26,14 +27,14 @@ class Comparison {
   /// Calls visit(from, to), object space, for each half-edge of the outline while that holds.
   template <class Visit>
   bool each_edge(Visit visit) const {
-    for (const std::uint32_t t : region_.triangles())
+    for (const std::uint32_t t : region_.triangles)
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h)
         if (region_.is_outline(h) && !visit(point(region_.mesh.from(h)), point(region_.mesh.to(h)))) return false;
     return true;
   }
   template <class Visit>
   void each_corner(Visit visit) const {
-    for (const std::uint32_t t : region_.triangles())
+    for (const std::uint32_t t : region_.triangles)
       for (int k = 0; k < 3; ++k) visit(map_.point(region_.corner(t, k)));
   }
   glm::dvec3 point(std::uint32_t vertex) const { return map_.point(region_.mesh.positions[vertex]); }
@@ -52,37 +53,58 @@ class Comparison {
       return (a.z < middle) == (b.z < middle);
     });
     if (!one_side_each) return {};
+    Outline outline;
+    outline.vertices = off;
     each_corner([&](const glm::dvec3& p) { off = std::max({off, low - p.z, p.z - high}); });
     const Radius radius{candidate_.type};
     const double slope = std::max(std::abs(radius.slope(low - off)), std::abs(radius.slope(high + off)));
-    Outline outline;
     outline.distance = off * std::hypot(lengths_.z, slope * std::max(lengths_.x, lengths_.y));
     outline.lower.z = low + off, outline.upper.z = high - off;
     return outline;
   }
 
-  double rim_radius() const {
-    const double z = candidate_.clip[1];
-    switch (candidate_.type) {
-      case QuadricType::cone: return z;
-      case QuadricType::paraboloid: return std::sqrt(z);
-      case QuadricType::hyperboloid2: return std::sqrt(z * z - 1);
-      default: return 1;
-    }
+  /// Of a cylinder: a rectangle where angle and height are seen as coordinates. Both are largest and smallest at an
+  /// edge's ends.
+  std::optional<Outline> sector() const {
+    const double half = candidate_.half_angle, low = candidate_.clip[0], high = candidate_.clip[1];
+    const double radius = std::max(lengths_.x, lengths_.y);
+    const auto angle = [](const glm::dvec3& p) { return std::atan2(p.y, p.x); };
+    double turn = 0, off = 0;
+    each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
+      const double beside = angle(a) * angle(b) < 0
+                                ? infinity
+                                : std::max(std::abs(std::abs(angle(a)) - half), std::abs(std::abs(angle(b)) - half));
+      const double below = std::max(std::abs(a.z - low), std::abs(b.z - low));
+      const double above = std::max(std::abs(a.z - high), std::abs(b.z - high));
+      const double end = std::min(below, above);
+      beside* radius < end* lengths_.z ? turn = std::max(turn, beside) : off = std::max(off, end);
+      return true;
+    });
+    Outline outline;
+    outline.vertices = std::max(turn, off);
+    each_corner([&](const glm::dvec3& p) {
+      turn = std::max(turn, std::abs(angle(p)) - half);
+      off = std::max({off, low - p.z, p.z - high});
+    });
+    outline.distance = std::hypot(turn * radius, off * lengths_.z);
+    outline.half_angle = half - turn;
+    outline.lower.z = low + off, outline.upper.z = high - off;
+    return outline;
   }
 
   std::optional<Outline> rim() const {
-    const double rim = rim_radius();
+    const double rim = candidate_.type == QuadricType::disk ? 1 : section_radius(candidate_.type, candidate_.clip[1]);
     double off = 0;
+    Outline outline;
     each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
       const glm::dvec2 from(a), along = glm::dvec2(b) - from;
       const double size = glm::dot(along, along);
       const double at = size > 0 ? std::clamp(-glm::dot(from, along) / size, 0., 1.) : 0;
       off = std::max(off, rim - glm::length(from + at * along));
+      outline.vertices = std::max(outline.vertices, std::abs(glm::length(from) - rim));
       return true;
     });
     each_corner([&](const glm::dvec3& p) { off = std::max(off, std::hypot(p.x, p.y) - rim); });
-    Outline outline;
     const double slope = Height{candidate_.type}.steepest(rim + off, 0);
     outline.distance = off * std::hypot(std::max(lengths_.x, lengths_.y), slope * lengths_.z);
     outline.radius = rim - off;
@@ -101,11 +123,12 @@ class Comparison {
       x* size.x < y* size.y ? off.x = std::max(off.x, x) : off.y = std::max(off.y, y);
       return true;
     });
+    Outline outline;
+    outline.vertices = std::max(off.x / half.x, off.y / half.y);
     each_corner([&](const glm::dvec3& p) { off = glm::max(off, glm::abs(glm::dvec2(p)) - half); });
     const glm::dvec2 reach = half + off;
     const double slope = Height{candidate_.type}.steepest(reach.x, reach.y);
     const double across = glm::length(off * size), down = slope * glm::length(off) * lengths_.z;
-    Outline outline;
     outline.distance = std::hypot(across, down);
     outline.lower = glm::dvec3(off - half, -infinity), outline.upper = glm::dvec3(half - off, infinity);
     return outline;

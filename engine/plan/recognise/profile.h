@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 #include "accel/quadric.h"
 
@@ -21,6 +23,15 @@ inline Fibres fibres_of(QuadricType type, double lower_clip) {
   }
 }
 
+/// The direction of the fibre through a point, toward the unit primitive's outside.
+inline glm::dvec3 fibre(QuadricType type, Fibres fibres, const glm::dvec3& p) {
+  switch (fibres) {
+    case Fibres::central: return p;
+    case Fibres::radial: return {p.x, p.y, 0};
+    default: return {0, 0, type == QuadricType::plane || type == QuadricType::disk ? 1 : -1};
+  }
+}
+
 /// A tube's radius, a convex function of the height, and its slope.
 struct Radius {
   QuadricType type;
@@ -31,6 +42,17 @@ struct Radius {
     return type == QuadricType::cylinder ? 0 : type == QuadricType::cone ? 1 : z / std::sqrt(1 + z * z);
   }
 };
+
+/// The radius at height z, zero where there is nothing.
+inline double section_radius(QuadricType type, double z) {
+  switch (type) {
+    case QuadricType::cone: return std::max(z, 0.);
+    case QuadricType::paraboloid: return std::sqrt(std::max(z, 0.));
+    case QuadricType::hyperboloid1: return std::sqrt(1 + z * z);
+    case QuadricType::hyperboloid2: return std::sqrt(std::max(z * z - 1, 0.));
+    default: return 1;
+  }
+}
 
 /// A dome's or plate's height: the difference of two convex functions, `up` - `down`, and their gradients.
 struct Height {

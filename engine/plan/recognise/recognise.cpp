@@ -3,19 +3,25 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/trigonometric.hpp>
 #include <numeric>
 #include <string>
 
 #include "accel/tracer.h"
+#include "engine/plan/recognise/caps.h"
 #include "engine/plan/recognise/check.h"
-#include "engine/plan/recognise/coincident.h"
 #include "engine/plan/recognise/fit.h"
+#include "engine/plan/recognise/grow.h"
+#include "engine/plan/recognise/near_points.h"
 #include "engine/plan/recognise/shape.h"
 
 namespace rayengine {
 namespace {
 
 using namespace surfaces;
+
+/// Degrees by which neighbours in one plane may differ, as rounded coordinates make them.
+constexpr double flat = 0.1;
 
 bool is_finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -44,66 +50,147 @@ class Recogniser {
   }
 
   Recognition run() {
-    find_spheres(mesh_.triangles);
-    if (!waiting_.empty()) find_spheres(weld(mesh_.positions, mesh_.triangles));
-    std::ranges::sort(result_.quadrics, {}, [](const RecognisedQuadric& q) { return q.triangles[0]; });
-    result_.rest = std::move(waiting_);
-    return std::move(result_);
+    find_whole(topology(mesh_.triangles), false);
+    if (!waiting_.empty()) {
+      const std::vector<glm::uvec3> welded = weld(mesh_.positions, mesh_.triangles);
+      Topology mesh = topology(welded);
+      find_whole(mesh, true);
+      add_normals(mesh);
+      for (const double degrees : {50., 20., 7., flat}) find_patches(mesh, degrees);
+      find_between_plates(mesh);
+      judge_patches(mesh, grow_cylinders(mesh, waiting_));
+    }
+    close_with_caps(found_, tolerance_);
+    std::ranges::sort(found_, {}, [](const Found& f) { return f.triangles[0]; });
+    Recognition result;
+    for (Found& f : found_)
+      result.quadrics.push_back({shape_of(f.candidate), f.candidate.to_world, std::move(f.triangles), f.residual});
+    result.rest = std::move(waiting_);
+    return result;
   }
 
  private:
-  /// Whole connected pieces of the triangles that wait.
-  void find_spheres(std::span<const glm::uvec3> triangles) {
-    const Topology topology{mesh_.positions, triangles, find_twins(triangles, waiting_, mesh_.positions.size())};
-    const Regions pieces = connected(topology, waiting_, [](std::uint32_t) { return true; });
-    std::vector<std::optional<Verdict>> verdicts(pieces.size());
-    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-      verdicts[i] = judge_whole({topology, pieces, static_cast<std::uint32_t>(i)});
+  Topology topology(std::span<const glm::uvec3> triangles) const {
+    return {mesh_.positions, triangles, find_twins(triangles, waiting_, mesh_.positions.size()), {}};
+  }
+
+  template <class Judge>
+  std::vector<std::optional<Verdict>> judge_all(const Topology& mesh, const Regions& regions, Judge judge) const {
+    std::vector<std::optional<Verdict>> verdicts(regions.size());
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
+      if (regions[i].size() >= fewest_triangles) verdicts[i] = judge({mesh, regions, static_cast<std::uint32_t>(i)});
+    });
+    return verdicts;
+  }
+
+  Verdict verdict(const Region& region, const Candidate& candidate) const {
+    return {candidate, proven_residual(region, candidate, tolerance_)};
+  }
+
+  /// Spheres, and ellipsoids if those are wanted, that are whole connected pieces of the triangles that wait.
+  void find_whole(const Topology& mesh, bool ellipsoids) {
+    const Regions pieces = connected(mesh, waiting_, [](std::uint32_t) { return true; });
+    auto verdicts = judge_all(mesh, pieces, [&](const Region& region) -> std::optional<Verdict> {
+      if (const auto sphere = fit_sphere(region))
+        if (const Verdict v = verdict(region, *sphere); v.residual || !ellipsoids) return v;
+      const auto ellipsoid = ellipsoids ? fit_quadric(region) : std::nullopt;
+      if (!ellipsoid || ellipsoid->type != QuadricType::sphere) return {};
+      return verdict(region, *ellipsoid);
     });
     withdraw_coincident(verdicts);
     take(pieces, verdicts);
   }
 
-  std::optional<Verdict> judge_whole(const Region& region) const {
-    if (region.triangles().size() < fewest_triangles) return {};
-    const std::optional<Candidate> sphere = fit_sphere(region);
-    if (!sphere) return {};
-    return Verdict{*sphere, proven_residual(region, *sphere, tolerance_)};
+  void judge_patches(const Topology& mesh, const Regions& patches) {
+    take(patches, judge_all(mesh, patches, [&](const Region& region) { return judge_patch(region); }));
+  }
+
+  /// Of the triangles that wait.
+  void add_normals(Topology& mesh) const {
+    mesh.normals.resize(mesh.triangles.size());
+    tbb::parallel_for(std::size_t{0}, waiting_.size(),
+                      [&](std::size_t i) { mesh.normals[waiting_[i]] = normal(mesh, mesh.triangles[waiting_[i]]); });
+  }
+
+  /// Whether a half-edge's triangles meet at less than an angle.
+  static auto smooth(const Topology& mesh, double degrees) {
+    return [&mesh, cosine = std::cos(glm::radians(degrees))](std::uint32_t h) {
+      return glm::dot(mesh.normals[h / 3], mesh.normals[mesh.twins[h] / 3]) > cosine;
+    };
+  }
+
+  template <class Joins>
+  void find_patches(const Topology& mesh, Joins joins) {
+    judge_patches(mesh, connected(mesh, waiting_, joins));
+  }
+  void find_patches(const Topology& mesh, double degrees) { find_patches(mesh, smooth(mesh, degrees)); }
+
+  /// Curved pieces that run smoothly into flat ones, as fillets do: what is flat over more than a facet of a tube
+  /// bounds them.
+  void find_between_plates(const Topology& mesh) {
+    const Regions flats = connected(mesh, waiting_, smooth(mesh, flat));
+    const auto is_plate = [&](std::uint32_t t) { return flats.of(t) != no_id && flats[flats.of(t)].size() > 2; };
+    for (const double degrees : {50., 20., 7.})
+      find_patches(mesh, [&, gentle = smooth(mesh, degrees)](std::uint32_t h) {
+        return !is_plate(h / 3) && !is_plate(mesh.twins[h] / 3) && gentle(h);
+      });
+  }
+
+  static glm::dvec3 normal(const Topology& mesh, const glm::uvec3& t) {
+    const glm::dvec3 a = mesh.positions[t.x];
+    const glm::dvec3 n = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
+    return n / glm::length(n);
+  }
+
+  std::optional<Verdict> judge_patch(const Region& region) const {
+    std::vector<Candidate> candidates = fit_plates(region);
+    for (const Candidate& c : fit_tubes(region)) candidates.push_back(c);
+    // Whole spheres and ellipsoids had their turn, and some of them were withdrawn.
+    if (const auto c = fit_quadric(region); c && c->type != QuadricType::sphere) candidates.push_back(*c);
+    for (const Candidate& c : candidates)
+      if (const Verdict v = verdict(region, c); v.residual) return v;
+    return {};
   }
 
   /// Shells that lie in each other's tolerance, whether proven or not, are left as they are.
   void withdraw_coincident(std::vector<std::optional<Verdict>>& verdicts) const {
-    std::vector<Round> rounds;
-    std::vector<std::size_t> owner;
-    for (std::size_t i = 0; i < verdicts.size(); ++i) {
-      if (!verdicts[i]) continue;
-      rounds.push_back({verdicts[i]->candidate.to_world.origin, lengths(verdicts[i]->candidate.to_world)});
-      owner.push_back(i);
+    std::vector<glm::dvec3> centers;
+    std::vector<std::size_t> owners;
+    for (std::size_t i = 0; i < verdicts.size(); ++i)
+      if (verdicts[i]) centers.push_back(verdicts[i]->candidate.to_world.origin), owners.push_back(i);
+    const NearPoints near(centers, 2 * tolerance_);
+    std::vector<std::size_t> twice;
+    for (const std::size_t i : owners) {
+      const Affine& map = verdicts[i]->candidate.to_world;
+      bool found = false;
+      near.each(map.origin, [&](std::uint32_t k) {
+        if (owners[k] == i) return;
+        const Affine& other = verdicts[owners[k]]->candidate.to_world;
+        const glm::dvec3 apart = glm::max(glm::abs(map.origin - other.origin), glm::abs(lengths(map) - lengths(other)));
+        found = found || std::max({apart.x, apart.y, apart.z}) <= 2 * tolerance_;
+      });
+      if (found) twice.push_back(i);
     }
-    const std::vector<bool> twice = coincident(rounds, 2 * tolerance_);
-    for (std::size_t i = 0; i < owner.size(); ++i)
-      if (twice[i]) verdicts[owner[i]].reset();
+    for (const std::size_t i : twice) verdicts[i].reset();
   }
 
   /// Moves what is proven from the triangles that wait to the result.
   void take(const Regions& regions, const std::vector<std::optional<Verdict>>& verdicts) {
     for (std::uint32_t i = 0; i < verdicts.size(); ++i) {
       if (!verdicts[i] || !verdicts[i]->residual) continue;
-      const Candidate& c = verdicts[i]->candidate;
       const auto triangles = regions[i];
-      result_.quadrics.push_back(
-          {shape_of(c), c.to_world, {triangles.begin(), triangles.end()}, *verdicts[i]->residual});
+      found_.push_back({verdicts[i]->candidate, {triangles.begin(), triangles.end()}, *verdicts[i]->residual});
     }
     std::erase_if(waiting_, [&](std::uint32_t t) {
-      const auto& verdict = verdicts[regions.of(t)];
-      return verdict && verdict->residual;
+      const std::uint32_t region = regions.of(t);
+      return region != no_id && verdicts[region] && verdicts[region]->residual;
     });
   }
 
   const Mesh& mesh_;
   double tolerance_;
   std::vector<std::uint32_t> waiting_;  // ascending
-  Recognition result_;
+  std::vector<Found> found_;
 };
 
 }  // namespace

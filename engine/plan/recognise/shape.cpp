@@ -10,11 +10,10 @@ constexpr double beside = 1.001;
 
 /// A box whose ends in z clip, and whose sides lie beside the surface of revolution.
 Box box_around(const Candidate& c) {
-  double reach = 1;
-  if (c.type != QuadricType::cylinder && c.type != QuadricType::sphere)
-    for (const double z : c.clip) reach = std::max(reach, std::sqrt(std::abs(z)) + std::abs(z) + 1);
-  reach *= beside;
-  return {{-reach, -reach, c.clip[0]}, {reach, reach, c.clip[1]}};
+  const double reach = beside * std::max(section_radius(c.type, c.clip[0]), section_radius(c.type, c.clip[1]));
+  if (is_whole_turn(c)) return {{-reach, -reach, c.clip[0]}, {reach, reach, c.clip[1]}};
+  const double side = beside * std::sin(std::min(c.half_angle, 0.5 * std::numbers::pi));
+  return {{std::cos(c.half_angle), -side, c.clip[0]}, {reach, side, c.clip[1]}};
 }
 
 Box box_over_rectangle(const Candidate& c) {
@@ -33,14 +32,17 @@ QuadricMatrix negated(QuadricMatrix m) {
 QuadricShape shape_of(const Candidate& candidate) {
   QuadricShape shape;
   shape.type = candidate.type;
+  shape.capped = candidate.capped;
   const bool rectangle = candidate.type == QuadricType::plane || candidate.type == QuadricType::saddle;
-  if (rectangle)
+  const bool unit_saddle = candidate.type == QuadricType::saddle && candidate.half == glm::dvec2(1);
+  if (rectangle && !unit_saddle)
     shape.box = box_over_rectangle(candidate);
-  else if (candidate.type != QuadricType::sphere && candidate.type != QuadricType::disk)
+  else if (!rectangle && candidate.type != QuadricType::sphere && candidate.type != QuadricType::disk)
     shape.clip = candidate.clip;
-  if (!candidate.inward) return shape;
+  const bool sector = !is_whole_turn(candidate);
+  if (!candidate.inward && !sector) return shape;
   if (!rectangle) shape.box = box_around(candidate);
-  shape.matrix = negated(unit_matrix(candidate.type));
+  shape.matrix = candidate.inward ? negated(unit_matrix(candidate.type)) : unit_matrix(candidate.type);
   shape.type = QuadricType::general;
   shape.clip = {};
   return shape;

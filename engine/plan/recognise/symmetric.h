@@ -54,10 +54,13 @@ template <std::size_t N>
 Eigen<N> eigen(Matrix<N> m) {
   Matrix<N> v{};
   for (std::size_t i = 0; i < N; ++i) v[i][i] = 1;
-  for (int sweep = 0; sweep < 30; ++sweep)
+  bool turned = true;
+  for (int sweep = 0; sweep < 30 && turned; ++sweep) {
+    turned = false;
     for (std::size_t p = 0; p < N; ++p)
       for (std::size_t q = p + 1; q < N; ++q) {
-        if (m[p][q] == 0) continue;
+        if (std::abs(m[p][q]) <= 1e-17 * (std::abs(m[p][p]) + std::abs(m[q][q]))) continue;
+        turned = true;
         const double tau = (m[q][q] - m[p][p]) / (2 * m[p][q]);
         const double t = std::copysign(1, tau) / (std::abs(tau) + std::hypot(1, tau));
         const double c = 1 / std::hypot(1, t), s = t * c;
@@ -72,6 +75,7 @@ Eigen<N> eigen(Matrix<N> m) {
         }
         m[p][q] = m[q][p] = 0;
       }
+  }
   Eigen<N> result;
   for (std::size_t i = 0; i < N; ++i) {  // insertion in order
     std::size_t at = i;

@@ -16,6 +16,7 @@ struct Topology {
   /// Of each half-edge: the one that runs the other way along the same edge, or no_id unless there is exactly one, and
   /// none that runs the same way.
   std::vector<std::uint32_t> twins;
+  std::vector<glm::dvec3> normals;  ///< of unit length, one a triangle, NaN where it has no area; or none at all
 
   std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
   std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }

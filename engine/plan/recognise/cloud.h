@@ -1,0 +1,64 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+
+#include "engine/plan/recognise/candidate.h"
+
+namespace rayengine::surfaces {
+
+/// Calls visit(corner) for every corner of every triangle: vertices as often as they are used.
+template <class Visit>
+void each_corner(const Patch& patch, Visit visit) {
+  for (const std::uint32_t t : patch.triangles)
+    for (int k = 0; k < 3; ++k) visit(patch.corner(t, k));
+}
+
+/// Calls visit(from, to) for every edge of the outline.
+template <class Visit>
+void each_outline_edge(const Region& region, Visit visit) {
+  for (const std::uint32_t t : region.triangles)
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h)
+      if (region.is_outline(h))
+        visit(region.mesh.positions[region.mesh.from(h)], region.mesh.positions[region.mesh.to(h)]);
+}
+
+/// Calls visit(normal) for every triangle; the normal's length is twice the area.
+template <class Visit>
+void each_normal(const Patch& patch, Visit visit) {
+  for (const std::uint32_t t : patch.triangles) {
+    const glm::dvec3 a = patch.corner(t, 0);
+    visit(glm::cross(patch.corner(t, 1) - a, patch.corner(t, 2) - a));
+  }
+}
+
+/// Takes a region's corners to numbers of about 1, however large, small or far off they are, so that squares and sums
+/// of them lose nothing.
+struct Cloud {
+  glm::dvec3 mean{0};
+  double extent = 0;  ///< the largest distance from the mean along an axis
+
+  explicit Cloud(const Patch& patch) {
+    const glm::dvec3 near = patch.corner(patch.triangles[0], 0);  // differences from here are small
+    glm::dvec3 sum(0);
+    Box box;
+    each_corner(patch, [&](const glm::dvec3& p) { sum += p - near, box.add(p); });
+    mean = near + sum / (3. * static_cast<double>(patch.triangles.size()));
+    const glm::dvec3 reach = glm::max(box.upper - mean, mean - box.lower);
+    extent = std::max({reach.x, reach.y, reach.z});
+  }
+
+  bool usable() const { return extent > 0 && std::isfinite(extent); }
+  glm::dvec3 local(const glm::dvec3& p) const { return (p - mean) / extent; }
+  glm::dvec3 world(const glm::dvec3& p) const { return mean + extent * p; }
+};
+
+/// Right-handed and at right angles, with the unit vector `axis` as the third.
+inline glm::dmat3 frame(const glm::dvec3& axis) {
+  const glm::dvec3 size = glm::abs(axis);
+  glm::dvec3 away(0);
+  away[size.x <= size.y ? (size.x <= size.z ? 0 : 2) : (size.y <= size.z ? 1 : 2)] = 1;
+  const glm::dvec3 u = glm::normalize(glm::cross(away, axis));
+  return {u, glm::cross(axis, u), axis};
+}
+
+}  // namespace rayengine::surfaces
