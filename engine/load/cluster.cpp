@@ -1,0 +1,326 @@
+#include "engine/load/cluster.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include "accel/ray.h"
+#include "engine/load/surface_distance.h"
+
+namespace rayengine {
+namespace {
+
+using Positions = std::span<const glm::dvec3>;
+using Triangles = std::span<const glm::uvec3>;
+
+constexpr double widest = 4;                // cells of level 0, in limits; each level halves them
+constexpr std::uint8_t finest = 3;          // cells of half a limit
+constexpr std::uint8_t alone = finest + 1;  // vertices that are their own cluster
+constexpr int most_rounds = 12;
+constexpr int most_tried = 32;  // coarse triangles for each part of an original one
+constexpr int most_nodes = 32;  // along an edge of a coarse one
+
+constexpr std::size_t sample = 1024;      // triangles that are looked at first
+constexpr double hopeless_share = 0.5;    // of them that fail
+constexpr double worthwhile_share = 0.5;  // of triangles that may be left
+
+glm::dvec3 area_vector(const Corners& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
+
+/// The axis that a normal is nearest to, and its sign: 0 to 5. It keeps the sides of a sheet apart.
+std::uint64_t facing(const glm::dvec3& n) {
+  const glm::dvec3 size = glm::abs(n);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0));
+}
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+  return hash ^ hash >> 32;
+}
+
+struct CoarseTriangle {
+  glm::uvec3 corners;    // clusters, the lowest first
+  std::uint32_t source;  // the first triangle that became it
+};
+
+/// One partition of the vertices.
+struct Clusters {
+  std::vector<std::uint32_t> of;              // by vertex; no_id where no triangle uses it
+  std::vector<std::uint32_t> first, members;  // vertices of cluster c: members[first[c], first[c + 1])
+  std::vector<std::uint32_t> representative;  // by cluster
+
+  std::span<const std::uint32_t> members_of(std::uint32_t c) const {
+    return {members.data() + first[c], members.data() + first[c + 1]};
+  }
+  std::size_t count() const { return representative.size(); }
+};
+
+/// The triangles at each vertex, or at each cluster.
+class Incidence {
+ public:
+  Incidence() = default;
+  template <class T, class CornersOf>
+  Incidence(std::size_t count, std::span<const T> triangles, CornersOf corners_of)
+      : first_(count + 1), list_(3 * triangles.size()) {
+    for (const T& t : triangles)
+      for (int i = 0; i < 3; ++i) ++first_[corners_of(t)[i] + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> next = first_;
+    for (std::uint32_t k = 0; k < triangles.size(); ++k)
+      for (int i = 0; i < 3; ++i) list_[next[corners_of(triangles[k])[i]]++] = k;
+  }
+  std::span<const std::uint32_t> operator[](std::uint32_t i) const {
+    return {list_.data() + first_[i], list_.data() + first_[i + 1]};
+  }
+
+ private:
+  std::vector<std::uint32_t> first_, list_;
+};
+
+class Clustering {
+ public:
+  Clustering(Positions positions, Triangles triangles, double limit)
+      : positions_(positions),
+        triangles_(triangles),
+        limit_(limit),
+        normals_(positions.size(), glm::dvec3(0)),
+        level_(positions.size(), unused),
+        stir_(positions.size(), Stir::own) {
+    for (const glm::uvec3& t : triangles_)
+      for (int k = 0; k < 3; ++k) {
+        normals_[t[k]] += area_vector(corners(positions_, t));
+        level_[t[k]] = 0;
+      }
+    of_vertex_ = Incidence(positions_.size(), triangles_, [](const glm::uvec3& t) { return t; });
+  }
+
+  std::vector<glm::uvec3> run() {
+    for (int round = 0; round < most_rounds; ++round) {
+      partition();
+      collect();
+      if (double(coarse_.size()) > worthwhile_share * double(triangles_.size())) break;  // more cells leave more
+      if (!refine(round)) return result();
+    }
+    return {triangles_.begin(), triangles_.end()};
+  }
+
+ private:
+  static constexpr std::uint8_t unused = 255;
+  using Key = std::pair<std::uint64_t, std::uint32_t>;  // of a cell, and a vertex in it
+
+  // Cells whose hashes are equal by chance become one cluster, which the proof then rejects.
+  std::uint64_t cell(std::uint32_t v) const {
+    if (level_[v] == alone) return mixed(mixed(alone, v), 0);
+    const double side = std::ldexp(widest * limit_, -level_[v]);
+    std::uint64_t hash = 8 * level_[v] + facing(normals_[v]);
+    for (int k = 0; k < 3; ++k)
+      hash = mixed(hash, static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(positions_[v][k] / side))));
+    return hash;
+  }
+
+  void partition() {
+    std::vector<Key> keys;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v)
+      if (level_[v] != unused) keys.push_back({0, v});
+    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i].first = cell(keys[i].second); });
+    tbb::parallel_sort(keys);
+    clusters_ = {std::vector<std::uint32_t>(positions_.size(), no_id), {}, {}, {}};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (i == 0 || keys[i].first != keys[i - 1].first) clusters_.first.push_back(static_cast<std::uint32_t>(i));
+      clusters_.of[keys[i].second] = static_cast<std::uint32_t>(clusters_.first.size() - 1);
+      clusters_.members.push_back(keys[i].second);
+    }
+    clusters_.representative.resize(clusters_.first.size());
+    clusters_.first.push_back(static_cast<std::uint32_t>(keys.size()));
+    tbb::parallel_for(std::size_t{0}, clusters_.count(),
+                      [&](std::size_t c) { represent(static_cast<std::uint32_t>(c)); });
+  }
+
+  /// By the vertex that is nearest to the mean, so that no vertex is moved off the surface.
+  void represent(std::uint32_t c) {
+    const auto members = clusters_.members_of(c);
+    glm::dvec3 mean(0);
+    for (const std::uint32_t v : members) mean += positions_[v] / static_cast<double>(members.size());
+    double least = infinity;
+    for (const std::uint32_t v : members)
+      if (const glm::dvec3 d = positions_[v] - mean; glm::dot(d, d) < least)
+        least = glm::dot(d, d), clusters_.representative[c] = v;
+  }
+
+  Corners corners_of(const CoarseTriangle& k) const {
+    return corners(positions_, {clusters_.representative[k.corners.x], clusters_.representative[k.corners.y],
+                                clusters_.representative[k.corners.z]});
+  }
+
+  /// The triangles whose corners are in three clusters, each once for either side.
+  void collect() {
+    coarse_.clear();
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const glm::uvec3& t = triangles_[i];
+      glm::uvec3 c(clusters_.of[t.x], clusters_.of[t.y], clusters_.of[t.z]);
+      if (c.x == c.y || c.y == c.z || c.z == c.x) continue;
+      while (c.x > c.y || c.x > c.z) c = {c.y, c.z, c.x};
+      coarse_.push_back({c, i});
+    }
+    const auto order = [](const CoarseTriangle& k) {
+      return std::tie(k.corners.x, k.corners.y, k.corners.z, k.source);
+    };
+    tbb::parallel_sort(coarse_, [&](const auto& a, const auto& b) { return order(a) < order(b); });
+    const auto same = [](const auto& a, const auto& b) { return a.corners == b.corners; };
+    coarse_.erase(std::unique(coarse_.begin(), coarse_.end(), same), coarse_.end());
+    std::erase_if(coarse_, [&](const auto& k) { return area_vector(corners_of(k)) == glm::dvec3(0); });
+    coarse_corners_.clear();
+    for (const CoarseTriangle& k : coarse_) coarse_corners_.push_back(corners_of(k));
+    stars_ = Incidence(clusters_.count(), std::span<const CoarseTriangle>(coarse_),
+                       [](const CoarseTriangle& k) { return k.corners; });
+  }
+
+  /// Whether one coarse triangle at these clusters is near all of a part of an original one.
+  bool is_near_coarse(const Corners& part, const glm::uvec3& clusters) const {
+    int tried = 0;
+    for (int i = 0; i < 3; ++i)
+      for (const std::uint32_t k : stars_[clusters[i]]) {
+        if (is_within(part, coarse_corners_[k], limit_ * limit_)) return true;
+        if (++tried == most_tried) return false;
+      }
+    return false;
+  }
+
+  /// Whether that is so of a triangle, or of the four parts of it.
+  bool is_kept(const glm::uvec3& t) const {
+    const Corners whole = corners(positions_, t);
+    const glm::uvec3 clusters(clusters_.of[t.x], clusters_.of[t.y], clusters_.of[t.z]);
+    if (is_near_coarse(whole, clusters)) return true;
+    if (longest_edge(whole) < 0.5 * limit_) return false;
+    return std::ranges::all_of(quartered(whole), [&](const Corners& part) { return is_near_coarse(part, clusters); });
+  }
+
+  /// Whether the node is within half a limit of an original triangle at the vertex of a cluster that is nearest to it.
+  bool is_near_original(const glm::dvec3& node, std::uint32_t cluster) const {
+    double least = infinity;
+    std::uint32_t nearest = 0;
+    for (const std::uint32_t v : clusters_.members_of(cluster))
+      if (const glm::dvec3 d = positions_[v] - node; glm::dot(d, d) < least) least = glm::dot(d, d), nearest = v;
+    return std::ranges::any_of(of_vertex_[nearest], [&](std::uint32_t t) {
+      return squared_distance(node, corners(positions_, triangles_[t])) <= 0.25 * limit_ * limit_;
+    });
+  }
+
+  /// Whether all of a coarse triangle is near the original: near one triangle of it, or cut into parts so small that it
+  /// is enough for their corners to be near.
+  bool is_founded(std::size_t index) const {
+    const CoarseTriangle& k = coarse_[index];
+    const Corners& c = coarse_corners_[index];
+    if (is_within(c, corners(positions_, triangles_[k.source]), limit_ * limit_)) return true;
+    // No point of a triangle is farther from its corners than its longest edge by the root of three.
+    const double n = std::ceil(longest_edge(c) / (0.5 * limit_ * std::numbers::sqrt3));
+    if (n > most_nodes || !faces_as_before(k, c)) return false;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) {
+        const glm::dvec3 node = ((n - i - j) * c[0] + double(i) * c[1] + double(j) * c[2]) / n;
+        const int corner = 2 * i + j >= n ? 1 : i + 2 * j >= n ? 2 : 0;  // whose cluster is the likeliest
+        if (!is_near_original(node, k.corners[corner]) && !is_near_original(node, k.corners[(corner + 1) % 3]) &&
+            !is_near_original(node, k.corners[(corner + 2) % 3]))
+          return false;
+      }
+    return true;
+  }
+
+  bool faces_as_before(const CoarseTriangle& k, const Corners& c) const {
+    glm::dvec3 before(0);
+    for (int i = 0; i < 3; ++i)
+      for (const std::uint32_t v : clusters_.members_of(k.corners[i])) before += normals_[v];
+    return glm::dot(area_vector(c), before) >= 0;
+  }
+
+  bool is_new(const CoarseTriangle& k) const {
+    return std::max({stir_[clusters_.representative[k.corners.x]], stir_[clusters_.representative[k.corners.y]],
+                     stir_[clusters_.representative[k.corners.z]]}) == Stir::own;
+  }
+  bool is_lost(const glm::uvec3& t) const {
+    return std::max({stir_[t.x], stir_[t.y], stir_[t.z]}) > Stir::none && !is_kept(t);
+  }
+  bool is_unfounded(std::size_t k) const { return is_new(coarse_[k]) && !is_founded(k); }
+
+  /// Whether so many of some triangles fail that it is not worth the while to look at all.
+  bool is_hopeless() const {
+    const std::size_t step = triangles_.size() / sample + 1, coarse_step = coarse_.size() / sample + 1;
+    std::size_t lost = 0, unfounded = 0;
+    for (std::size_t i = 0; i < triangles_.size(); i += step) lost += is_lost(triangles_[i]);
+    for (std::size_t k = 0; k < coarse_.size(); k += coarse_step) unfounded += is_unfounded(k);
+    return double(lost * step) > hopeless_share * double(triangles_.size()) ||
+           double(unfounded * coarse_step) > hopeless_share * double(coarse_.size());
+  }
+
+  /// Clusters where the proof fails, of those where it has to be made anew.
+  std::vector<char> failures() const {
+    std::vector<char> lost(triangles_.size()), unfounded(coarse_.size()), fails(clusters_.count());
+    tbb::parallel_for(std::size_t{0}, lost.size(), [&](std::size_t i) { lost[i] = is_lost(triangles_[i]); });
+    tbb::parallel_for(std::size_t{0}, unfounded.size(), [&](std::size_t k) { unfounded[k] = is_unfounded(k); });
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      for (int k = 0; lost[i] && k < 3; ++k) fails[clusters_.of[triangles_[i][k]]] = true;
+    for (std::size_t i = 0; i < unfounded.size(); ++i)
+      for (int k = 0; unfounded[i] && k < 3; ++k) fails[coarse_[i].corners[k]] = true;
+    return fails;
+  }
+
+  /// Marks what the proof has to be made for anew once clusters that fail are split: they, and all at whose triangles
+  /// they have a corner.
+  void stir(const std::vector<char>& fails) {
+    std::vector<char> touched = fails;
+    for (const CoarseTriangle& k : coarse_)
+      if (fails[k.corners.x] || fails[k.corners.y] || fails[k.corners.z])
+        for (int i = 0; i < 3; ++i) touched[k.corners[i]] = true;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      const std::uint32_t c = clusters_.of[v];
+      if (c != no_id) stir_[v] = fails[c] ? Stir::own : touched[c] ? Stir::neighbour : Stir::none;
+    }
+  }
+
+  /// Halves the cells where the proof fails; says whether there were any.
+  bool refine(int round) {
+    const bool hopeless = is_hopeless();
+    const std::vector<char> fails = hopeless ? std::vector<char>(clusters_.count(), true) : failures();
+    stir(fails);
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      if (level_[v] >= alone || !fails[clusters_.of[v]]) continue;
+      level_[v] = round < most_rounds / 2 ? std::min<std::uint8_t>(level_[v] + (hopeless ? 2 : 1), alone) : alone;
+    }
+    return std::ranges::count(fails, true) > 0;
+  }
+
+  std::vector<glm::uvec3> result() const {
+    std::vector<glm::uvec3> list;
+    for (const CoarseTriangle& k : coarse_)
+      list.push_back({clusters_.representative[k.corners.x], clusters_.representative[k.corners.y],
+                      clusters_.representative[k.corners.z]});
+    return list;
+  }
+
+  const Positions positions_;
+  const Triangles triangles_;
+  const double limit_;
+  std::vector<glm::dvec3> normals_;  // by vertex, not normalised
+  std::vector<std::uint8_t> level_;  // by vertex
+  Clusters clusters_;
+  std::vector<CoarseTriangle> coarse_;
+  std::vector<Corners> coarse_corners_;
+  Incidence of_vertex_;  // original triangles
+  Incidence stars_;      // coarse triangles of a cluster
+  enum class Stir : char { none, neighbour, own };
+  std::vector<Stir> stir_;  // by vertex: what happened to its cluster in the round before
+};
+
+}  // namespace
+
+std::vector<glm::uvec3> cluster(Positions positions, Triangles triangles, double limit) {
+  return Clustering(positions, triangles, limit).run();
+}
+
+}  // namespace rayengine

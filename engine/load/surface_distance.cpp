@@ -1,0 +1,134 @@
+#include "engine/load/surface_distance.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace rayengine {
+namespace {
+
+constexpr int most_cuts = 12;           // in four
+constexpr double smallest_part = 0.25;  // in limits
+
+double squared(const glm::dvec3& v) { return glm::dot(v, v); }
+
+double to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 along = b - a;
+  const double length = squared(along);
+  const double s = length > 0 ? std::clamp(glm::dot(p - a, along) / length, 0., 1.) : 0;
+  return squared(p - (a + s * along));
+}
+
+/// From a point in the frame of the BVH to a box there.
+double to_box(const glm::dvec3& p, const FloatBox& box) {
+  return squared(glm::max(glm::max(glm::dvec3(box.lower) - p, p - glm::dvec3(box.upper)), glm::dvec3(0)));
+}
+
+BinaryBvh build_over(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles) {
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const glm::dvec3& corner : corners(positions, triangles[i])) boxes[i].add(corner);
+  return build_bvh(boxes, 4);
+}
+
+}  // namespace
+
+double longest_edge(const Corners& c) {
+  return std::sqrt(std::max({squared(c[1] - c[0]), squared(c[2] - c[1]), squared(c[0] - c[2])}));
+}
+
+std::array<Corners, 4> quartered(const Corners& c) {
+  const glm::dvec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
+  return {{{c[0], ab, ca}, {ab, c[1], bc}, {ca, bc, c[2]}, {ab, bc, ca}}};
+}
+
+double squared_distance(const glm::dvec3& p, const Corners& t) {
+  const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const glm::dvec3 n = glm::cross(ab, ac);
+  const double area = squared(n), v = glm::dot(glm::cross(ap, ac), n), w = glm::dot(glm::cross(ab, ap), n);
+  const bool has_normal = area > 1e-20 * squared(ab) * squared(ac);
+  if (has_normal && v >= 0 && w >= 0 && v + w <= area) {
+    const double height = glm::dot(ap, n);
+    return height * height / area;
+  }
+  return std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
+}
+
+bool is_within(const Corners& from, const Corners& to, double square) {
+  return squared_distance(from[0], to) <= square && squared_distance(from[1], to) <= square &&
+         squared_distance(from[2], to) <= square;
+}
+
+double squared_reach(const Corners& from, const Corners& to) {
+  return std::max({squared_distance(from[0], to), squared_distance(from[1], to), squared_distance(from[2], to)});
+}
+
+Surface::Surface(std::span<const glm::dvec3> positions, std::vector<glm::uvec3> triangles)
+    : positions_(positions), triangles_(std::move(triangles)), bvh_(build_over(positions_, triangles_)) {}
+
+struct Surface::Query {
+  const Corners& part;
+  double limit;
+  glm::dvec3 middle;  // of the part, in the frame of the BVH as is the square
+  double squared_radius;
+};
+
+std::optional<double> Surface::first_near(std::uint32_t at, const Query& query) const {
+  const BinaryBvh::Node& node = bvh_.nodes[at];
+  if (node.leaf()) {
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double square = squared_reach(query.part, corners(positions_, triangles_[bvh_.order[i]]));
+      if (square <= query.limit * query.limit) return std::sqrt(square);
+    }
+    return {};
+  }
+  std::array<std::pair<double, std::uint32_t>, 2> children{{{0, at + 1}, {0, node.right}}};
+  for (auto& [distance, child] : children) distance = to_box(query.middle, bvh_.nodes[child].box);
+  if (children[1].first < children[0].first) std::swap(children[0], children[1]);
+  for (const auto& [distance, child] : children)
+    if (distance <= query.squared_radius)
+      if (const auto found = first_near(child, query)) return found;
+  return {};
+}
+
+/// Of the one triangle that was found to be near all of the part.
+std::optional<double> Surface::near_one(const Corners& part, double limit) const {
+  if (triangles_.empty()) return {};
+  const double radius = limit * bvh_.frame.scale * (1 + 1e-9);
+  const glm::dvec3 middle = ((part[0] + part[1] + part[2]) / 3. - bvh_.frame.center) * bvh_.frame.scale;
+  return first_near(0, {part, limit, middle, radius * radius});
+}
+
+std::optional<double> Surface::bound(const Corners& part, double limit, int cuts) const {
+  if (const auto reach = near_one(part, limit)) return reach;
+  if (cuts == most_cuts || longest_edge(part) < smallest_part * limit) return {};
+  for (const glm::dvec3& corner : part)
+    if (!near_one({corner, corner, corner}, limit)) return {};
+  double largest = 0;
+  for (const Corners& quarter : quartered(part)) {
+    const std::optional<double> its = bound(quarter, limit, cuts + 1);
+    if (!its) return {};
+    largest = std::max(largest, *its);
+  }
+  return largest;
+}
+
+std::optional<double> Surface::bound(const Corners& triangle, double limit) const { return bound(triangle, limit, 0); }
+
+Excursion excursion(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles,
+                    const Surface& surface, double limit) {
+  std::vector<double> bounds(triangles.size());
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
+    bounds[i] = surface.bound(corners(positions, triangles[i]), limit).value_or(infinity);
+  });
+  Excursion result;
+  for (std::uint32_t i = 0; i < bounds.size(); ++i)
+    if (bounds[i] <= limit)
+      result.distance = std::max(result.distance, bounds[i]);
+    else
+      result.strays.push_back(i);
+  return result;
+}
+
+}  // namespace rayengine
