@@ -11,36 +11,33 @@ namespace {
 struct Cap {
   glm::dvec3 center, normal;  // of unit length, out of the solid
   double radius;
+  double oval;  // how much less its other radius is, or more
 };
 
 Cap disk(const Found& f) {
   const Affine& map = f.candidate.to_world;
-  return {map.origin, map.linear[2] / glm::length(map.linear[2]), glm::length(map.linear[0])};
+  return {map.origin, map.linear[2] / glm::length(map.linear[2]), glm::length(map.linear[0]), 0};
 }
 
 /// Bound on the distance between two disks: shift, turn and swell one into the other.
 double distance(const Cap& a, const Cap& b) {
   return glm::length(a.center - b.center) + 2 * a.radius * glm::length(a.normal - b.normal) +
-         std::abs(a.radius - b.radius);
-}
-
-bool is_round(const Candidate& c) {
-  const glm::dvec3 l = lengths(c.to_world);
-  return std::abs(l.x - l.y) <= 1e-9 * l.x;
+         std::abs(a.radius - b.radius) + a.oval + b.oval;
 }
 
 bool may_have_caps(const Candidate& c) {
-  return c.type >= QuadricType::cylinder && c.type <= QuadricType::hyperboloid2 && !c.inward && is_whole_turn(c) &&
-         is_round(c);
+  return c.type >= QuadricType::cylinder && c.type <= QuadricType::hyperboloid2 && !c.inward && is_whole_turn(c);
 }
 
 std::vector<Cap> caps_of(const Candidate& c) {
   const glm::dvec3 axis = c.to_world.linear[2] / glm::length(c.to_world.linear[2]);
-  const double size = glm::length(c.to_world.linear[0]);
+  const glm::dvec3 size = lengths(c.to_world);
   std::vector<Cap> caps;
   for (const int end : {0, 1}) {
     const double radius = section_radius(c.type, c.clip[end]);
-    if (radius > 0) caps.push_back({c.to_world.point({0, 0, c.clip[end]}), end ? axis : -axis, size * radius});
+    if (radius > 0)
+      caps.push_back({c.to_world.point({0, 0, c.clip[end]}), end ? axis : -axis, size.x * radius,
+                      std::abs(size.x - size.y) * radius});
   }
   return caps;
 }

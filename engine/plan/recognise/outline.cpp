@@ -82,10 +82,13 @@ class Comparison {
     });
     Outline outline;
     outline.vertices = std::max(turn, off);
-    each_corner([&](const glm::dvec3& p) {
-      turn = std::max(turn, std::abs(angle(p)) - half);
-      off = std::max({off, low - p.z, p.z - high});
-    });
+    for (const std::uint32_t t : region_.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 p = map_.point(region_.corner(t, k)), next = map_.point(region_.corner(t, (k + 1) % 3));
+        if (std::abs(angle(p) - angle(next)) > std::numbers::pi) return {};  // right across what a sector leaves open
+        turn = std::max(turn, std::abs(angle(p)) - half);
+        off = std::max({off, low - p.z, p.z - high});
+      }
     outline.distance = std::hypot(turn * radius, off * lengths_.z);
     outline.half_angle = half - turn;
     outline.lower.z = low + off, outline.upper.z = high - off;

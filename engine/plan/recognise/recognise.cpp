@@ -10,15 +10,19 @@
 #include "accel/tracer.h"
 #include "engine/plan/recognise/caps.h"
 #include "engine/plan/recognise/check.h"
+#include "engine/plan/recognise/doubled.h"
 #include "engine/plan/recognise/fit.h"
 #include "engine/plan/recognise/grow.h"
-#include "engine/plan/recognise/near_points.h"
 #include "engine/plan/recognise/shape.h"
 
 namespace rayengine {
 namespace {
 
 using namespace surfaces;
+
+/// Degrees at which neighbours meet within a patch, one try after the other: what coarse tubes need, then less, so that
+/// patches come apart along finer edges.
+constexpr std::array angles{50., 20., 7.};
 
 /// Degrees by which neighbours in one plane may differ, as rounded coordinates make them.
 constexpr double flat = 0.1;
@@ -51,14 +55,16 @@ class Recogniser {
 
   Recognition run() {
     find_whole(topology(mesh_.triangles), false);
-    if (!waiting_.empty()) {
-      const std::vector<glm::uvec3> welded = weld(mesh_.positions, mesh_.triangles);
+    if (waiting_.size() >= fewest_triangles) {
+      const std::vector<glm::uvec3> welded = weld(mesh_.positions, mesh_.triangles, waiting_);
       Topology mesh = topology(welded);
       find_whole(mesh, true);
       add_normals(mesh);
-      for (const double degrees : {50., 20., 7., flat}) find_patches(mesh, degrees);
+      judged_size_.resize(mesh.triangles.size());
+      for (const double degrees : angles) find_patches(mesh, degrees);
+      find_patches(mesh, flat);
       find_between_plates(mesh);
-      judge_patches(mesh, grow_cylinders(mesh, waiting_));
+      grow(mesh);
     }
     close_with_caps(found_, tolerance_);
     std::ranges::sort(found_, {}, [](const Found& f) { return f.triangles[0]; });
@@ -97,12 +103,16 @@ class Recogniser {
       if (!ellipsoid || ellipsoid->type != QuadricType::sphere) return {};
       return verdict(region, *ellipsoid);
     });
-    withdraw_coincident(verdicts);
+    withdraw_doubled(verdicts);
     take(pieces, verdicts);
   }
 
-  void judge_patches(const Topology& mesh, const Regions& patches) {
-    take(patches, judge_all(mesh, patches, [&](const Region& region) { return judge_patch(region); }));
+  /// Patches are parts of those that were judged before: one of the same size is the same again.
+  bool was_judged(const Region& region) {
+    const auto size = static_cast<std::uint32_t>(region.triangles.size());
+    if (judged_size_[region.triangles[0]] == size) return true;
+    for (const std::uint32_t t : region.triangles) judged_size_[t] = size;
+    return false;
   }
 
   /// Of the triangles that wait.
@@ -121,7 +131,10 @@ class Recogniser {
 
   template <class Joins>
   void find_patches(const Topology& mesh, Joins joins) {
-    judge_patches(mesh, connected(mesh, waiting_, joins));
+    const Regions patches = connected(mesh, waiting_, joins);
+    take(patches, judge_all(mesh, patches, [&](const Region& region) {
+           return was_judged(region) ? std::nullopt : judge_patch(region);
+         }));
   }
   void find_patches(const Topology& mesh, double degrees) { find_patches(mesh, smooth(mesh, degrees)); }
 
@@ -130,10 +143,15 @@ class Recogniser {
   void find_between_plates(const Topology& mesh) {
     const Regions flats = connected(mesh, waiting_, smooth(mesh, flat));
     const auto is_plate = [&](std::uint32_t t) { return flats.of(t) != no_id && flats[flats.of(t)].size() > 2; };
-    for (const double degrees : {50., 20., 7.})
+    for (const double degrees : angles)
       find_patches(mesh, [&, gentle = smooth(mesh, degrees)](std::uint32_t h) {
         return !is_plate(h / 3) && !is_plate(mesh.twins[h] / 3) && gentle(h);
       });
+  }
+
+  void grow(const Topology& mesh) {
+    const Regions grown = grow_cylinders(mesh, waiting_);
+    take(grown, judge_all(mesh, grown, [&](const Region& region) { return judge_patch(region); }));
   }
 
   static glm::dvec3 normal(const Topology& mesh, const glm::uvec3& t) {
@@ -153,25 +171,14 @@ class Recogniser {
   }
 
   /// Shells that lie in each other's tolerance, whether proven or not, are left as they are.
-  void withdraw_coincident(std::vector<std::optional<Verdict>>& verdicts) const {
-    std::vector<glm::dvec3> centers;
+  void withdraw_doubled(std::vector<std::optional<Verdict>>& verdicts) const {
+    std::vector<Affine> shells;
     std::vector<std::size_t> owners;
     for (std::size_t i = 0; i < verdicts.size(); ++i)
-      if (verdicts[i]) centers.push_back(verdicts[i]->candidate.to_world.origin), owners.push_back(i);
-    const NearPoints near(centers, 2 * tolerance_);
-    std::vector<std::size_t> twice;
-    for (const std::size_t i : owners) {
-      const Affine& map = verdicts[i]->candidate.to_world;
-      bool found = false;
-      near.each(map.origin, [&](std::uint32_t k) {
-        if (owners[k] == i) return;
-        const Affine& other = verdicts[owners[k]]->candidate.to_world;
-        const glm::dvec3 apart = glm::max(glm::abs(map.origin - other.origin), glm::abs(lengths(map) - lengths(other)));
-        found = found || std::max({apart.x, apart.y, apart.z}) <= 2 * tolerance_;
-      });
-      if (found) twice.push_back(i);
-    }
-    for (const std::size_t i : twice) verdicts[i].reset();
+      if (verdicts[i]) shells.push_back(verdicts[i]->candidate.to_world), owners.push_back(i);
+    const std::vector<bool> twice = doubled(shells, 2 * tolerance_);
+    for (std::size_t i = 0; i < owners.size(); ++i)
+      if (twice[i]) verdicts[owners[i]].reset();
   }
 
   /// Moves what is proven from the triangles that wait to the result.
@@ -189,7 +196,8 @@ class Recogniser {
 
   const Mesh& mesh_;
   double tolerance_;
-  std::vector<std::uint32_t> waiting_;  // ascending
+  std::vector<std::uint32_t> waiting_;      // ascending
+  std::vector<std::uint32_t> judged_size_;  // of each triangle, the size of the last patch of it that was judged
   std::vector<Found> found_;
 };
 

@@ -26,7 +26,8 @@ struct Topology {
 std::vector<std::uint32_t> find_twins(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> among,
                                       std::size_t vertices);
 
-/// Triangles whose corners at equal positions have one vertex: the lowest.
-std::vector<glm::uvec3> weld(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles);
+/// The triangles, where those `among` them have one vertex, the lowest of theirs, for all corners at one position.
+std::vector<glm::uvec3> weld(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles,
+                             std::span<const std::uint32_t> among);
 
 }  // namespace rayengine::surfaces
