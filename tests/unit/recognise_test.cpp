@@ -395,11 +395,29 @@ TEST(RecogniseNot, PlatesWithOtherOutlines) {
   expect_untouched(grid(6, 6, [](double u, double v) { return glm::dvec3(u + 0.3 * v, v, 0); }), 0.01);
 }
 
-TEST(RecogniseNot, Waves) {
-  expect_untouched(
-      grid(40, 40, [](double u, double v) { return glm::dvec3(u, v, 0.1 * std::sin(9 * u) * std::cos(7 * v)); }),
-      0.002);
+Mesh waves(int cells) {
+  return grid(cells, cells,
+              [](double u, double v) { return glm::dvec3(u, v, 0.1 * std::sin(9 * u) * std::cos(7 * v)); });
 }
+
+TEST(MayHoldQuadrics, TellsTessellationsFromFreeForms) {
+  for (const stability::Body& body : stability::bodies())
+    EXPECT_TRUE(body.shape.type == QuadricType::general ||
+                may_hold_quadrics(tessellated(body.shape, 3, stability::turned(1))))
+        << body.name;
+  Mesh free = subdivided_sphere(5);
+  for (glm::dvec3& p : free.positions) p *= 1 + 0.1 * std::sin(7 * p.x) * std::cos(5 * p.y + p.z);
+  EXPECT_FALSE(may_hold_quadrics(free));
+  append(free, sphere(1, {0, 0, 5}));
+  EXPECT_TRUE(may_hold_quadrics(free));
+  EXPECT_FALSE(may_hold_quadrics(Mesh{}));
+  Mesh rough = sphere(1, {0, 0, 0});
+  Random random(6, 6);
+  for (glm::dvec3& p : rough.positions) p += 1e-3 * random.direction();
+  EXPECT_FALSE(may_hold_quadrics(rough));
+}
+
+TEST(RecogniseNot, Waves) { expect_untouched(waves(40), 0.002); }
 
 TEST(RecogniseNot, FewTriangles) {
   expect_untouched(stability::bipyramid(3, 1, 1), 10);

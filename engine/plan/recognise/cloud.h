@@ -52,6 +52,11 @@ struct Cloud {
   glm::dvec3 world(const glm::dvec3& p) const { return mean + extent * p; }
 };
 
+/// What a quadric's ten coefficients are multiplied with, those off the diagonal taken twice.
+inline std::array<double, 10> monomials(const glm::dvec3& p) {
+  return {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.x * p.z, p.y * p.z, p.x, p.y, p.z, 1};
+}
+
 /// Right-handed and at right angles, with the unit vector `axis` as the third.
 inline glm::dmat3 frame(const glm::dvec3& axis) {
   const glm::dvec3 size = glm::abs(axis);

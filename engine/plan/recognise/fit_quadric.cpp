@@ -32,10 +32,7 @@ struct Form {
 
 std::optional<Form> least_squares(const Region& region, const Cloud& cloud) {
   Matrix<10> m{};
-  each_corner(region, [&](const glm::dvec3& at) {
-    const glm::dvec3 p = cloud.local(at);
-    add_outer<10>(m, {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.x * p.z, p.y * p.z, p.x, p.y, p.z, 1});
-  });
+  each_corner(region, [&](const glm::dvec3& at) { add_outer<10>(m, monomials(cloud.local(at))); });
   const Eigen<10> fit = eigen(m);
   if (!(fit.values[0] < zero * fit.values[1])) return {};  // more than one quadric would do
   const Vector<10>& q = fit.vectors[0];

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <glm/trigonometric.hpp>
 
+#include "engine/plan/recognise/neighbourhood.h"
 #include "engine/plan/recognise/recognise.h"
 #include "engine/plan/recognise/tube.h"
 
@@ -65,25 +65,8 @@ class Growth {
                     cloud.extent * fitted->noise};
   }
 
-  /// Free neighbours of triangle t, across edges that are not sharp.
-  template <class Visit>
-  void each_neighbour(std::uint32_t t, Visit visit) const {
-    constexpr double sharp = 0.64;  // the cosine of 50 degrees
-    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-      const std::uint32_t twin = mesh_.twins[h];
-      if (twin == no_id || region_of_[twin / 3] != free) continue;
-      if (glm::dot(mesh_.normals[t], mesh_.normals[twin / 3]) > sharp) visit(twin / 3);
-    }
-  }
-
-  /// The nearest few triangles, in order of steps.
   std::vector<std::uint32_t> seed_patch(std::uint32_t seed) const {
-    std::vector<std::uint32_t> patch{seed};
-    for (std::size_t i = 0; i < patch.size() && patch.size() < seed_size; ++i)
-      each_neighbour(patch[i], [&](std::uint32_t t) {
-        if (std::ranges::find(patch, t) == patch.end()) patch.push_back(t);
-      });
-    return patch;
+    return neighbourhood(mesh_, seed, seed_size, [&](std::uint32_t t) { return region_of_[t] == free; });
   }
 
   std::vector<std::uint32_t> good_seeds() const {
@@ -118,8 +101,8 @@ class Growth {
     ++stamp_;
     seen_[seed] = stamp_;
     for (std::size_t i = 0; i < patch.size(); ++i)
-      each_neighbour(patch[i], [&](std::uint32_t t) {
-        if (seen_[t] == stamp_ || !cylinder.runs_along(mesh_.normals[t])) return;
+      each_smooth_neighbour(mesh_, patch[i], [&](std::uint32_t t) {
+        if (region_of_[t] != free || seen_[t] == stamp_ || !cylinder.runs_along(mesh_.normals[t])) return;
         for (int k = 0; k < 3; ++k)
           if (!(cylinder.off(mesh_.positions[mesh_.triangles[t][k]]) <= allowance)) return;
         seen_[t] = stamp_;

@@ -154,12 +154,6 @@ class Recogniser {
     take(grown, judge_all(mesh, grown, [&](const Region& region) { return judge_patch(region); }));
   }
 
-  static glm::dvec3 normal(const Topology& mesh, const glm::uvec3& t) {
-    const glm::dvec3 a = mesh.positions[t.x];
-    const glm::dvec3 n = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
-    return n / glm::length(n);
-  }
-
   std::optional<Verdict> judge_patch(const Region& region) const {
     std::vector<Candidate> candidates = fit_plates(region);
     for (const Candidate& c : fit_tubes(region)) candidates.push_back(c);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -21,6 +22,13 @@ struct Topology {
   std::uint32_t from(std::uint32_t half_edge) const { return triangles[half_edge / 3][half_edge % 3]; }
   std::uint32_t to(std::uint32_t half_edge) const { return triangles[half_edge / 3][(half_edge % 3 + 1) % 3]; }
 };
+
+/// Of unit length; NaN where there is no area.
+inline glm::dvec3 normal(const Topology& mesh, const glm::uvec3& t) {
+  const glm::dvec3 a = mesh.positions[t.x];
+  const glm::dvec3 n = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
+  return n / glm::length(n);
+}
 
 /// Of each of the `among` triangles' half-edges its twin; others get none.
 std::vector<std::uint32_t> find_twins(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> among,
