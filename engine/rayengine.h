@@ -6,6 +6,8 @@
 #include "accel/ray.h"
 #include "accel/surface.h"
 #include "accel/tracer.h"
+#include "engine/plan/planned.h"
+#include "engine/plan/verify.h"
 #include "engine/render/render.h"
 #include "engine/scene/scene.h"
 #include "engine/tracers.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accel/ray_cone.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 
 // Tiles of rays of every kind that a cone may have to hold, and whether it does, with 113 bits.
 namespace rayengine::test {

@@ -2,7 +2,7 @@
 #include <glm/geometric.hpp>
 
 #include "accel/kernels/kernels.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/rays.h"
 
 namespace rayengine {

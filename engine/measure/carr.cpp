@@ -10,7 +10,7 @@
 
 #include "accel/stopwatch.h"
 #include "accel/walk.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/rays.h"
 #include "engine/query.h"
 #include "engine/tracers.h"

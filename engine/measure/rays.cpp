@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/render/departure.h"
 #include "engine/render/render.h"
 

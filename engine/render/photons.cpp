@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "accel/ray_cone.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/query.h"
 #include "engine/render/departure.h"
 #include "engine/render/scatter.h"

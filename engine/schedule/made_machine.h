@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/measure/random.h"
+#include "accel/random.h"
 
 namespace rayengine {
 

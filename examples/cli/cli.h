@@ -26,6 +26,7 @@ void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_chart(CLI::App& app, Action& action);
 void add_stress(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 
@@ -50,7 +51,7 @@ CLI::Option* add_count(CLI::App* app, const std::string& name, int& count, std::
                        const std::string& help);
 CLI::Option* add_scene(CLI::App* app, std::filesystem::path& scene);
 CLI::Option* add_tracer(CLI::App* app, std::string& name);
-CLI::Option* add_precision(CLI::App* app, Precision& precision);
+CLI::Option* add_precision(CLI::App* app, std::optional<Precision>& precision);
 CLI::Option* add_size(CLI::App* app, std::optional<glm::ivec2>& size, const std::string& fallback);
 
 /// Comma-separated names, as in `--tracers embree,reference`.

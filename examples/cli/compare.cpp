@@ -26,7 +26,7 @@ struct Options {
   Common common;
   fs::path scene, rays, json, save;
   std::string tracers;
-  Precision precision = Precision::robust;
+  std::optional<Precision> precision;
   std::optional<glm::ivec2> size;
 };
 
@@ -142,7 +142,7 @@ int run(const Options& o) {
   const ThreadLimit limit(o.common.threads);
   const LoadedScene loaded = load(o.scene, o.common);
   const std::vector<Ray> rays = rays_for(o, loaded.scene.camera);
-  const TracerOptions options{o.precision, o.common.threads, o.common.gpu};
+  const TracerOptions options{o.precision.value_or(Precision::robust), o.common.threads, o.common.gpu};
   std::vector<std::unique_ptr<Tracer>> tracers;
   for (const std::string& name : tracer_names) tracers.push_back(make_tracer(name, loaded.scene.geometry, options));
   Tracer& oracle = *tracers[oracle_index(tracer_names)];

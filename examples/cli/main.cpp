@@ -80,6 +80,7 @@ void add_subcommands(CLI::App& app, rayengine::cli::Action& action) {
   add_bench(app, action);
   add_chart(app, action);
   add_stress(app, action);
+  add_plan(app, action);
   add_paper(app, action);
   add_info(app, action);
 }
@@ -106,7 +107,7 @@ int answer(int argc, char** argv) {
   if (!action)
     return report(
         wrong_usage, "rayengine",
-        "say what to do: render, trace, compare, bench, chart, stress, paper or info (see 'rayengine --help')");
+        "say what to do: render, trace, compare, bench, chart, stress, plan, paper or info (see 'rayengine --help')");
   return run(app, action);
 }
 

@@ -95,13 +95,13 @@ Precision to_precision(const std::string& name) {
                              "there is no precision '" + name + "'; choose among half, fast, robust, certified");
 }
 
-CLI::Option* add_precision(CLI::App* app, Precision& precision) {
+CLI::Option* add_precision(CLI::App* app, std::optional<Precision>& precision) {
   return app
       ->add_option_function<std::string>(
           "--precision", [&](const std::string& name) { precision = to_precision(name); },
           "Accuracy of the answers: half, fast, robust, certified")
       ->type_name("P")
-      ->default_str(std::string(to_string(precision)));
+      ->default_str(std::string(to_string(Precision::robust)));
 }
 
 CLI::Option* add_size(CLI::App* app, std::optional<glm::ivec2>& size, const std::string& fallback) {

@@ -13,6 +13,7 @@
 #include "engine/render/animation.h"
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
+#include "examples/cli/planning.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
 
@@ -31,9 +32,10 @@ struct Options {
   fs::path scene, output, stats;
   std::optional<glm::ivec2> size;
   std::string tracer = "auto";
-  Precision precision = Precision::robust;
+  std::optional<Precision> precision;
   bool linear = false;
   int frames = 1;
+  PlanningOptions planning;
   RenderOptions render;
 };
 
@@ -76,6 +78,8 @@ void check(Options& o) {
   check_output(o.output);
   if (!o.stats.empty()) check_output(o.stats);
   if (o.size) check_size(*o.size, 4);
+  if (o.planning.tolerance && o.frames > 1)
+    throw CLI::ValidationError("--tolerance", "a plan is for one camera: render frames without");
   if (o.render.caustics > 0 && o.render.shading == Shading::direct)
     throw CLI::ValidationError("--caustics", "--shading direct knows no glass and no mirrors: choose full");
 }
@@ -89,7 +93,7 @@ std::uint64_t total(const RenderStats& stats) {
 }
 
 Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const RenderStats& stats,
-             const Seconds& seconds) {
+             const Seconds& seconds, const Json& plan) {
   const Tracer& tracer = *made.tracer;
   Json rays;
   for (std::size_t kind = 0; kind < stats.rays.size(); ++kind) rays[ray_kinds[kind]] = stats.rays[kind];
@@ -113,6 +117,7 @@ Json to_json(const Options& o, const Scene& scene, const MadeTracer& made, const
           {"bytes", tracer.bytes()},
           {"geometry_bytes", scene.geometry->bytes()},
           {"peak_bytes", peak_memory()},
+          {"plan", plan},
           {"shares", device_shares(tracer, made.said)},
           {"scheduler", scheduler_json(tracer)},
           {"device", device(thread_count(o.common.threads))}};
@@ -165,13 +170,18 @@ int run(Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
   LoadedScene loaded = load(o.scene, o.common);
-  Scene& scene = loaded.scene;
-  if (o.size) scene.camera.size = *o.size;
-  check_size(scene.camera.size, 4 + 3 * o.render.aovs.size());
-  const MadeTracer made = make_tracer(o.tracer, scene.geometry, o.precision, o.common);
+  if (o.size) loaded.scene.camera.size = *o.size;
+  check_size(loaded.scene.camera.size, 4 + 3 * o.render.aovs.size());
+  const double expected = expected_rays(loaded.scene, o.render.spp);
+  const PlannedScene planned(o.planning, std::move(loaded.scene), expected, true, o.common);
+  const Scene& scene = planned.scene();
+  const MadeTracer made = planned.make_tracer(o.tracer, o.precision);
   const auto [stats, writing] = make_pictures(o, scene, *made.tracer);
   const Seconds seconds{loaded.seconds, made.tracer->build_seconds(), stats.seconds, writing};
-  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, made, stats, seconds));
+  Json plan = planned.json();
+  if (o.planning.verify > 0)
+    plan["verified"] = planned.verify(*made.tracer, random_camera_rays(scene.camera, o.planning.verify));
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, scene, made, stats, seconds, plan));
   if (!o.common.quiet()) say(o, scene, *made.tracer, stats, seconds);
   return 0;
 }
@@ -216,6 +226,7 @@ void add_render(CLI::App& app, Action& action) {
   add_tracer(sub, options->tracer);
   add_precision(sub, options->precision);
   add_picture_options(sub, *options);
+  add_planning(sub, options->planning);
   sub->add_option("--stats", options->stats, "JSON file with times, rays and memory")->type_name("FILE");
   sub->callback([options, &action] { action = [options] { return run(*options); }; });
 }

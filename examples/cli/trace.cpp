@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <glm/geometric.hpp>
 #include <iostream>
 
 #include "accel/stopwatch.h"
@@ -12,6 +13,7 @@
 #include "engine/query.h"
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
+#include "examples/cli/planning.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
 
@@ -25,7 +27,8 @@ struct Options {
   fs::path scene, rays, output, stats;
   std::string query = "closest";
   std::string tracer = "auto";
-  Precision precision = Precision::robust;
+  std::optional<Precision> precision;
+  PlanningOptions planning{.unit = Tolerance::Unit::scene};
 };
 
 fs::path offsets_file(fs::path output) { return output.replace_extension(".offsets.npy"); }
@@ -91,7 +94,8 @@ struct Figures {
   double rate() const { return static_cast<double>(rays) / trace / 1e6; }
 };
 
-Json to_json(const Options& o, const Geometry& geometry, const MadeTracer& made, const Figures& figures) {
+Json to_json(const Options& o, const Geometry& geometry, const MadeTracer& made, const Figures& figures,
+             const Json& plan) {
   const Tracer& tracer = *made.tracer;
   return {{"scene", o.scene.string()},
           {"tracer", tracer.name()},
@@ -108,6 +112,7 @@ Json to_json(const Options& o, const Geometry& geometry, const MadeTracer& made,
           {"bytes", tracer.bytes()},
           {"geometry_bytes", geometry.bytes()},
           {"peak_bytes", peak_memory()},
+          {"plan", plan},
           {"shares", device_shares(tracer, made.said)},
           {"scheduler", scheduler_json(tracer)},
           {"device", device(thread_count(o.common.threads))}};
@@ -128,23 +133,39 @@ Figures count(std::span<const Ray> rays, std::span<const Hit> hits) {
   return figures;
 }
 
+/// Some of the rays that can be asked, spread evenly, with directions of unit length.
+std::vector<Ray> sample(std::span<const Ray> rays, int count) {
+  std::vector<Ray> some;
+  const std::size_t step = std::max<std::size_t>(rays.size() / static_cast<std::size_t>(count), 1);
+  for (std::size_t i = 0; i < rays.size(); i += step) {
+    if (!is_valid(rays[i])) continue;
+    const double length = glm::length(rays[i].direction);
+    some.push_back({rays[i].origin, rays[i].tmin * length, rays[i].direction / length, rays[i].tmax * length});
+  }
+  return some;
+}
+
 int run(const Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
   const std::vector<Ray> rays = read_rays(o.rays);
-  const LoadedScene loaded = load(o.scene, o.common);
-  const Geometry& geometry = *loaded.scene.geometry;
-  const MadeTracer made = make_tracer(o.tracer, loaded.scene.geometry, o.precision, o.common);
+  LoadedScene loaded = load(o.scene, o.common);
+  const PlannedScene planned(o.planning, std::move(loaded.scene), static_cast<double>(rays.size()), false, o.common);
+  const Geometry& geometry = *planned.scene().geometry;
+  const MadeTracer made = planned.make_tracer(o.tracer, o.precision);
   const auto& tracer = made.tracer;
   say_rounding(o, geometry, *tracer);
   const Stopwatch watch;
   HitLists lists = ask(o, *tracer, rays);
   if (o.query != "any") refine_all(geometry, *tracer, rays, lists.offsets, lists.hits);
   const double seconds = watch.seconds();
+  for (Hit& hit : lists.hits) hit.object = object_number(planned.scene().object_numbers, hit.object);
+  Json plan = planned.json();
+  if (o.planning.verify > 0) plan["verified"] = planned.verify(*tracer, sample(rays, o.planning.verify));
   write(o, lists);
   Figures figures = count(rays, lists.hits);
   figures.load = loaded.seconds, figures.trace = seconds;
-  if (!o.stats.empty()) write_json(o.stats, to_json(o, geometry, made, figures));
+  if (!o.stats.empty()) write_json(o.stats, to_json(o, geometry, made, figures, plan));
   if (!o.common.quiet())
     std::cerr << fmt::format("{}: {} rays, {} hits, {} invalid, {} ({:.3g} Mrays/s), tracer {}, precision {}\n",
                              o.output.string(), count_text(figures.rays), count_text(figures.hits),
@@ -175,6 +196,7 @@ void add_trace(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"closest", "any", "all"}));
   add_tracer(sub, options->tracer);
   add_precision(sub, options->precision);
+  add_planning(sub, options->planning);
   sub->add_option("--stats", options->stats, "JSON file with times, rays and memory")->type_name("FILE");
   sub->callback([options, &action] { action = [options] { return run(*options); }; });
 }

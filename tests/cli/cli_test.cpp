@@ -87,7 +87,7 @@ TEST_F(CliUsage, VersionIsOneLine) {
 }
 
 TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
-  expect_failure(2, "", "render, trace, compare, bench, chart, stress, paper or info");
+  expect_failure(2, "", "render, trace, compare, bench, chart, stress, plan, paper or info");
   expect_failure(2, "frobnicate", "frobnicate");
   expect_failure(2, "render scene.nff --frobnicate", "--frobnicate");
   expect_failure(2, "render scene.nff --tracer nobody", "choose among auto, embree");
@@ -110,6 +110,13 @@ TEST_F(CliUsage, WrongArgumentsExitWith2AndSayWhatIsValid) {
   expect_failure(2, "stress --tracers nobody", "nobody");
   expect_failure(2, "stress --precisions perfect", "perfect");
   expect_failure(2, "stress --rays 0", "--rays");
+  for (const char* tolerance : {"-1", "nan", "inf", "1e999", "half"}) {
+    expect_failure(2, std::string("render scene.nff --tolerance ") + tolerance, "--tolerance");
+    expect_failure(2, std::string("plan scene.nff --tolerance ") + tolerance, "--tolerance");
+  }
+  expect_failure(2, "plan", "SCENE");
+  expect_failure(2, "render scene.nff --verify 10", "--tolerance");
+  expect_failure(2, "render scene.nff --tolerance 1 --frames 2", "one camera");
 }
 
 TEST_F(CliFailure, WorkThatCannotBeDoneExitsWith1) {
@@ -403,6 +410,30 @@ TEST_F(Cli, ChartShowsTracersAndTessellationsWithTheirFront) {
   EXPECT_GE(broken, 9u);
   for (const char* name : {"chart.csv", "distance.csv", "index.html"}) EXPECT_TRUE(fs::exists(file("out") / name));
   expect_failure(2, "chart scene.nff ../scene.nff -o other", "is taken");
+}
+
+TEST_F(Cli, PlanExplainsItself) {
+  const test::Outcome outcome = run("plan scene.nff --tolerance 0.5 --verify 500 --json p.json");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("tracer and precision"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("0 farther than promised"), std::string::npos) << outcome.err;
+  const json plan = parse("p.json");
+  EXPECT_EQ(plan["tolerance"], 0.5);
+  EXPECT_EQ(plan["verified"]["rays"], 500);
+  for (const json& choice : plan["choices"]) EXPECT_FALSE(choice["why"].get<std::string>().empty());
+}
+
+TEST_F(CliRender, ToATolerance) {
+  EXPECT_EQ(run("render scene.nff -o a.exr --aov object -q").code, 0);
+  const test::Outcome planned =
+      run("render scene.nff -o b.exr --aov object -q --tolerance 0.1 --verify 200 --stats b.json");
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_EQ(parse("b.json")["plan"]["verified"]["broken"], 0);
+  const test::Outcome exact = run("render scene.nff -o c.exr --aov object -q --tolerance 0 --stats c.json");
+  EXPECT_EQ(exact.code, 0) << exact.err;
+  EXPECT_EQ(parse("c.json")["precision"], "certified");
+  EXPECT_EQ(run("render scene.nff -o d.exr --tolerance 1 --tracer bvh --stats d.json").code, 0);
+  EXPECT_EQ(parse("d.json")["tracer"], "bvh");
 }
 
 TEST_F(CliInfo, CountsWhatASceneHolds) {

@@ -9,7 +9,7 @@
 #include "accel/geometry.h"
 #include "cpu/reference/quadric.h"
 #include "cpu/reference/triangle.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 
 namespace rayengine {
 namespace {

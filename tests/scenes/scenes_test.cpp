@@ -6,15 +6,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 
 #include "cpu/reference_tracer.h"
 #include "engine/batched.h"
 #include "engine/load/load.h"
+#include "engine/load/simplifier.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
+#include "engine/plan/planned.h"
+#include "engine/plan/verify.h"
 #include "engine/tracers.h"
 #include "tests/data.h"
+#include "tests/temporary.h"
 
 namespace rayengine {
 namespace {
@@ -136,6 +141,37 @@ TEST_P(Scenes, AreTheSameForEveryTracer) {
   EXPECT_GT(sets[2].rays.size(), sets[0].rays.size() / 20) << "too few hits to prove anything";
   for (const std::string& name : tracers_for(*scene.geometry))
     compare_all(*make_tracer(name, scene.geometry), oracle, scene, sets);
+}
+
+/// A machine on which triangles cost so much that all are replaced that can be.
+DeviceMeasurements eager_device() {
+  DeviceMeasurements device = usual_device();
+  for (TracerCost& cost : device.tracers) cost.triangle.build *= 1000;
+  return device;
+}
+
+/// What a plan makes of a scene, whatever the making costs, against exact arithmetic on the scene as it was given.
+TEST_P(Scenes, KeepToATolerance) {
+  if (file().empty()) GTEST_SKIP() << "no " << GetParam() << " in " << test::data_folder() << ": set RAYENGINE_DATA";
+  const test::TemporaryFolder cache;
+  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  const DeviceMeasurements device = eager_device();
+  Scene scene = load_scene(file());
+  scene.camera.size = {side, side};  // few pixels are large ones: there is more to be replaced
+  const std::vector<Ray> rays = random_camera_rays(scene.camera, 2000);
+  for (const double pixels : {0., 0.1, 1.}) {
+    const Tolerance tolerance{pixels};
+    const Planned planned = plan_scene(
+        scene,
+        {.tolerance = tolerance, .rays = expected_rays(scene, 1), .prepare = true, .simplifier = cached_simplifier()});
+    const Scene& model = planned.model.scene;
+    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+    const Verification found = verify(scene, model, *tracer, tolerance, rays);
+    std::printf("%.1f pixels: %zu objects replaced, %llu of %llu rays agree beside, at most %.2g off\n", pixels,
+                planned.model.replaced.size(), static_cast<unsigned long long>(found.beside),
+                static_cast<unsigned long long>(found.rays), found.largest);
+    EXPECT_EQ(found.broken, 0u) << pixels;
+  }
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "cpu/bvh_tracer.h"
 #include "cpu/embree_tracer.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/rays.h"
 
 namespace rayengine {

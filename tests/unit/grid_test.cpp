@@ -11,7 +11,7 @@
 #include "accel/tracer.h"
 #include "accel/voxel_overlap.h"
 #include "cpu/reference_tracer.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/rays.h"
 #include "gpu/scene/frame_ray.h"
 

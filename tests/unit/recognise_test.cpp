@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "accel/tracer.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/stress/shapes.h"
 #include "engine/measure/tessellate.h"
 #include "engine/tracers.h"

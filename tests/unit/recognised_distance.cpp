@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/rays.h"
 #include "engine/tracers.h"
 

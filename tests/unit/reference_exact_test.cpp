@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cpu/reference_tracer.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "tests/unit/exact_world.h"
 
 namespace rayengine {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "accel/geometry.h"
-#include "engine/measure/random.h"
+#include "accel/random.h"
 
 // Rays for the suite: each from numbers of its own, so that more rays begin with the fewer.
 namespace rayengine::stability {

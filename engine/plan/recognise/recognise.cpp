@@ -53,9 +53,9 @@ class Recogniser {
     std::iota(waiting_.begin(), waiting_.end(), 0u);
   }
 
-  Recognition run() {
+  Recognition run(Pieces pieces) {
     find_whole(topology(mesh_.triangles), false);
-    if (waiting_.size() >= fewest_triangles) {
+    if (pieces == Pieces::parts && waiting_.size() >= fewest_triangles) {
       const std::vector<glm::uvec3> welded = weld(mesh_.positions, mesh_.triangles, waiting_);
       Topology mesh = topology(welded);
       find_whole(mesh, true);
@@ -197,9 +197,9 @@ class Recogniser {
 
 }  // namespace
 
-Recognition recognise(const Mesh& mesh, double tolerance) {
+Recognition recognise(const Mesh& mesh, double tolerance, Pieces pieces) {
   check_input(mesh, tolerance);
-  return Recogniser(mesh, tolerance).run();
+  return Recogniser(mesh, tolerance).run(pieces);
 }
 
 }  // namespace rayengine

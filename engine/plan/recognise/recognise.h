@@ -26,11 +26,15 @@ struct Recognition {
 /// instead of a native test, so that below this nothing is gained.
 inline constexpr std::size_t fewest_triangles = 8;
 
+/// Where to look: at whole connected pieces, which are balls and ellipsoids and found faster than a BVH is built, or at
+/// the parts of pieces, too, which takes some twenty times as long.
+enum class Pieces { whole, parts };
+
 /// Finds regions of a mesh that are tessellated quadrics: see docs/plan.md. The outside of a quadric is where the mesh
 /// has its front. `tolerance` is in the mesh's units. The same result whatever the number of threads. Where in doubt
 /// the triangles stay. Throws Error when the tolerance is not finite and above zero, on positions that are not finite,
 /// and on indices out of range.
-Recognition recognise(const Mesh& mesh, double tolerance);
+Recognition recognise(const Mesh& mesh, double tolerance, Pieces pieces = Pieces::parts);
 
 /// Whether it is worth while to ask recognise(): by a look at some thousand triangles, however many there are. False
 /// for scans, free forms and meshes whose triangles are in no order; true for some free forms too, such as height

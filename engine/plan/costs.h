@@ -1,0 +1,25 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/plan/plan.h"
+
+// What both halves of a plan reckon with; not for callers.
+namespace rayengine {
+
+// Of the tolerance, what the model may use and what arithmetic may.
+inline constexpr double model_share = 0.9, arithmetic_share = 1 - model_share;
+// Another way than the usual one must be predicted to take no more than this of its time: predictions are rough.
+inline constexpr double worthwhile = 0.85;
+
+/// Seconds a ray among so many primitives.
+inline double per_ray(const PrimitiveCost& cost, bool coherent, double primitives) {
+  const double* c = coherent ? cost.coherent : cost.scattered;
+  return c[0] + c[1] * std::log2(std::max(primitives, 1.0));
+}
+
+/// What is done without a plan: embree at robust.
+const TracerCost& usual_tracer(const DeviceMeasurements& device);
+
+}  // namespace rayengine

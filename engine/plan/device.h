@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/tracer.h"
+
+namespace rayengine {
+
+/// What one kind of primitive costs a tracer. Times are for the whole machine: all its threads together.
+struct PrimitiveCost {
+  double build = 0;             ///< seconds a primitive
+  double bytes = 0;             ///< a primitive
+  double coherent[2] = {0, 0};  ///< seconds a ray: with one primitive, and more for each doubling of their number
+  double scattered[2] = {0, 0};
+};
+
+struct TracerCost {
+  std::string tracer;
+  Precision precision = Precision::robust;
+  double triangle_roundoff = 0, quadric_roundoff = 0;  ///< as in Limits
+  PrimitiveCost triangle, quadric;
+};
+
+/// What was measured of a machine, for plans to choose by.
+struct DeviceMeasurements {
+  std::vector<TracerCost> tracers;
+  double recognise_whole = 0;  ///< seconds a triangle, looking for quadrics in whole pieces of a mesh
+  double recognise_parts = 0;  ///< and in their parts
+  double simplify = 0;         ///< seconds a triangle of a mesh that is made coarser
+};
+
+/// What measure_device() found on the machine of docs/performance.md: ratios that hold well enough elsewhere.
+const DeviceMeasurements& usual_device();
+
+/// A text file of one line each, which load_device() reads again.
+std::string to_text(const DeviceMeasurements& device);
+/// Throws Error on anything else than to_text() writes.
+DeviceMeasurements device_from_text(const std::string& text);
+
+}  // namespace rayengine

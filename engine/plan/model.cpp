@@ -1,0 +1,113 @@
+#include "engine/plan/model.h"
+
+#include <algorithm>
+
+#include "engine/plan/recognise/recognise.h"
+
+namespace rayengine {
+namespace {
+
+/// The triangles named, with the vertices that they use.
+Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), no_id);
+  Mesh part;
+  for (const std::uint32_t t : triangles) {
+    glm::uvec3 corners = mesh.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t& v = number[corners[k]];
+      if (v == no_id) {
+        v = static_cast<std::uint32_t>(part.positions.size());
+        part.positions.push_back(mesh.positions[corners[k]]);
+        if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[corners[k]]);
+      }
+      corners[k] = v;
+    }
+    part.triangles.push_back(corners);
+  }
+  return part;
+}
+
+class ModelBuilder {
+ public:
+  ModelBuilder(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier)
+      : scene_(scene), geometry_(*scene.geometry), plan_(plan), simplifier_(simplifier) {}
+
+  Model run() {
+    for (object_ = 0; object_ < geometry_.objects.size(); ++object_)
+      if (!replace()) keep();
+    Model model{scene_, std::move(replaced_)};
+    if (model.replaced.empty()) return model;
+    model.scene.geometry = builder_.build();
+    model.scene.object_numbers = std::move(numbers_);
+    return model;
+  }
+
+ private:
+  bool replace() {
+    switch (plan_.objects[object_]) {
+      case Representation::kept: return false;
+      case Representation::recognised: return recognised(Pieces::whole);
+      case Representation::recognised_parts: return recognised(Pieces::parts);
+      case Representation::prepared: return simplified(simplifier_.recall);
+      case Representation::simplified: return simplified(simplifier_.make);
+    }
+    return false;
+  }
+
+  bool recognised(Pieces pieces) {
+    const Mesh mesh = mesh_of(geometry_, object_);
+    const Recognition found = recognise(mesh, plan_.allowances[object_], pieces);
+    if (found.quadrics.empty()) return false;
+    Replacement what = replacement(mesh);
+    for (const RecognisedQuadric& q : found.quadrics) {
+      add(builder_.add(q.shape, material(), q.to_world));
+      what.distance = std::max(what.distance, q.residual);
+    }
+    if (!found.rest.empty()) add(builder_.add(part_of(mesh, found.rest), material()));
+    what.quadrics = static_cast<std::uint32_t>(found.quadrics.size());
+    what.triangles_left = static_cast<std::uint32_t>(found.rest.size());
+    replaced_.push_back(what);
+    return true;
+  }
+
+  template <class Find>
+  bool simplified(const Find& find) {
+    if (!find) return false;
+    const Mesh mesh = mesh_of(geometry_, object_);
+    const std::optional<CoarserMesh> coarser = find(mesh, plan_.allowances[object_]);
+    if (!coarser || coarser->mesh.triangles.size() >= mesh.triangles.size()) return false;
+    add(builder_.add(coarser->mesh, material()));
+    Replacement what = replacement(mesh);
+    what.triangles_left = static_cast<std::uint32_t>(coarser->mesh.triangles.size());
+    what.distance = coarser->distance;
+    replaced_.push_back(what);
+    return true;
+  }
+
+  void keep() { add(builder_.add(geometry_, object_)); }
+
+  Replacement replacement(const Mesh& mesh) const {
+    return {object_, plan_.objects[object_], static_cast<std::uint32_t>(mesh.triangles.size()), 0, 0, 0};
+  }
+
+  std::uint32_t material() const { return geometry_.objects[object_].material; }
+  void add(std::uint32_t) { numbers_.push_back(object_number(scene_.object_numbers, object_)); }
+
+  const Scene& scene_;
+  const Geometry& geometry_;
+  const ModelPlan& plan_;
+  const Simplifier& simplifier_;
+  std::uint32_t object_ = 0;  // the scene's, that is at hand
+  GeometryBuilder builder_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<Replacement> replaced_;
+};
+
+}  // namespace
+
+Model make_model(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier) {
+  const bool nothing = std::ranges::all_of(plan.objects, [](Representation r) { return r == Representation::kept; });
+  return nothing ? Model{scene, {}} : ModelBuilder(scene, plan, simplifier).run();
+}
+
+}  // namespace rayengine

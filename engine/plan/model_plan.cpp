@@ -1,0 +1,153 @@
+#include <array>
+
+#include "engine/plan/costs.h"
+
+namespace rayengine {
+namespace {
+
+constexpr std::uint32_t smallest_mesh = 256;  // triangles: with fewer there is nothing to gain
+constexpr double least_share = 0.5;           // of a mesh's patches, for looking at all of it to pay
+constexpr double parts_share = 0.5;           // of what lies on quadrics, about what has an outline that fits one
+constexpr double left_per_area = 0.5;         // triangles left in a square of the allowance's side, by clustering
+constexpr double recall_seconds = 1e-8;       // a triangle, to look whether a coarser mesh is kept
+
+struct Option {
+  Representation representation = Representation::kept;
+  double seconds = 0;
+};
+
+/// Weighs the representations of one object.
+class Options {
+ public:
+  Options(const ObjectStatistics& object, double allowed, const SceneStatistics& scene,
+          const DeviceMeasurements& device, bool prepare)
+      : object_(object), allowed_(allowed), scene_(scene), device_(device), prepare_(prepare) {}
+
+  Option kept() const { return {Representation::kept, seconds(object_.triangles)}; }
+
+  Option best() const {
+    Option best = kept();
+    if (object_.triangles < smallest_mesh || !(allowed_ > 0)) return best;
+    const double enough = worthwhile * best.seconds;
+    for (const Option& option : {pieces(), parts(), coarser(), prepared()})
+      if (option.seconds < std::min(enough, best.seconds)) best = option;
+    return best;
+  }
+
+ private:
+  /// To build so many triangles, and to ask the rays that an object as large as this may catch.
+  double seconds(double triangles) const {
+    const TracerCost& usual = usual_tracer(device_);
+    return triangles * usual.triangle.build + rays() * per_ray(usual.triangle, scene_.coherent, triangles);
+  }
+
+  double rays() const {
+    if (object_.distance <= 0) return scene_.rays;
+    const double across = 2 * object_.radius / (object_.distance * scene_.pixel);
+    return std::min(scene_.rays, across * across);
+  }
+
+  /// Where the finding pays only once it is for many times, that is left out.
+  double finding(double per_triangle) const { return prepare_ ? 0 : object_.triangles * per_triangle; }
+
+  Option quadrics(Representation how, double share, double per_triangle) const {
+    if (share < least_share) return {how, infinity};
+    return {how, finding(per_triangle) + seconds(object_.triangles * (1 - share))};
+  }
+  Option pieces() const { return quadrics(Representation::recognised, object_.ball_share, device_.recognise_whole); }
+  Option parts() const {
+    return quadrics(Representation::recognised_parts, parts_share * object_.quadric_share, device_.recognise_parts);
+  }
+
+  double triangles_left() const {
+    const double area = object_.triangles * object_.spacing * object_.spacing / 2;
+    return std::min<double>(object_.triangles, left_per_area * area / (allowed_ * allowed_));
+  }
+  Option coarser() const { return {Representation::simplified, finding(device_.simplify) + seconds(triangles_left())}; }
+  Option prepared() const {
+    return {Representation::prepared, object_.triangles * recall_seconds + seconds(triangles_left())};
+  }
+
+  const ObjectStatistics& object_;
+  double allowed_;
+  const SceneStatistics& scene_;
+  const DeviceMeasurements& device_;
+  bool prepare_;
+};
+
+/// What was chosen for all objects of one kind of representation.
+struct Tally {
+  std::size_t objects = 0;
+  double triangles = 0, seconds = 0, instead_seconds = 0;
+};
+
+constexpr std::array representation_names{"as given", "quadrics in place of pieces", "quadrics in place of parts",
+                                          "coarser meshes, where prepared", "coarser meshes"};
+constexpr std::array representation_reasons{"nothing cheaper is within the tolerance",
+                                            "patches lie on ellipsoids, found faster than a BVH is built",
+                                            "patches lie on quadrics, and there are rays enough to repay the search",
+                                            "triangles are small; to make them larger takes longer than it saves",
+                                            "triangles are small, and larger ones within the tolerance"};
+
+std::string count_of(double n, const char* what) {
+  return std::to_string(static_cast<std::uint64_t>(n)) + " " + what + (n == 1 ? "" : "s");
+}
+
+Choice to_choice(std::size_t representation, const Tally& tally, const Tolerance& tolerance) {
+  const bool kept = representation == 0;
+  Choice c;
+  c.subject = count_of(static_cast<double>(tally.objects), "object") +
+              (tally.triangles > 0 ? ", " + count_of(tally.triangles, "triangle") : "");
+  c.chosen = representation_names[representation];
+  c.seconds = tally.seconds;
+  c.error = kept ? 0 : model_share * tolerance.value;
+  c.instead = kept ? "" : representation_names[0];
+  c.instead_seconds = kept ? -1 : tally.instead_seconds;
+  c.instead_error = kept ? -1 : 0;
+  c.why = tolerance.value == 0 ? "a tolerance of 0 means exact" : representation_reasons[representation];
+  return c;
+}
+
+bool alike(const ObjectStatistics& a, const ObjectStatistics& b) {
+  return a.triangles == b.triangles && std::abs(a.spacing - b.spacing) <= 1e-3 * a.spacing;
+}
+
+/// Whether two large meshes may be the same one.
+bool may_repeat(const SceneStatistics& scene) {
+  std::vector<ObjectStatistics> meshes;
+  for (const ObjectStatistics& o : scene.objects)
+    if (o.triangles >= smallest_mesh) meshes.push_back(o);
+  std::ranges::sort(meshes, {}, &ObjectStatistics::triangles);
+  return std::ranges::adjacent_find(meshes, alike) != meshes.end();
+}
+
+/// Of the tolerance, what a mesh may be moved by: rounded down to a power of the root of two, so that a camera that
+/// moves a little finds the coarser meshes that were kept.
+double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
+
+}  // namespace
+
+ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
+                     bool prepare) {
+  check(tolerance);
+  ModelPlan plan;
+  std::array<Tally, representation_names.size()> tallies;
+  for (const ObjectStatistics& o : scene.objects) {
+    const double allowed = rounded(model_share * allowance(tolerance, o, scene.pixel));
+    const Options options(o, allowed, scene, device, prepare);
+    const Option best = options.best();
+    plan.objects.push_back(best.representation);
+    plan.allowances.push_back(allowed);
+    Tally& tally = tallies[static_cast<std::size_t>(best.representation)];
+    ++tally.objects;
+    tally.triangles += o.triangles;
+    tally.seconds += best.seconds;
+    tally.instead_seconds += options.kept().seconds;
+  }
+  plan.find_repeats = may_repeat(scene);
+  for (std::size_t r = 0; r < tallies.size(); ++r)
+    if (tallies[r].objects > 0) plan.choices.push_back(to_choice(r, tallies[r], tolerance));
+  return plan;
+}
+
+}  // namespace rayengine

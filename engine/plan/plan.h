@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/plan/device.h"
+#include "engine/plan/statistics.h"
+
+// What to do for a tolerance, as plain functions of what was counted and measured: no scene, device or clock in them.
+namespace rayengine {
+
+enum class Representation : std::uint8_t {
+  kept,              ///< as it is
+  recognised,        ///< quadrics in place of the pieces that are tessellated ones
+  recognised_parts,  ///< and in place of parts of pieces
+  prepared,          ///< a coarser mesh, if one was made before and is kept
+  simplified,        ///< a coarser mesh
+};
+
+/// One decision, and the best alternative that it beat. Costs are seconds of the whole, errors in units of the
+/// tolerance; negative where nothing is predicted.
+struct Choice {
+  std::string subject, chosen;
+  double seconds = -1, error = -1;
+  std::string instead;
+  double instead_seconds = -1, instead_error = -1;
+  std::string why;
+};
+
+/// How the objects of a scene are to be represented.
+struct ModelPlan {
+  std::vector<Representation> objects;  ///< one for each
+  std::vector<double> allowances;       ///< how far each may be moved, in units of the scene
+  bool find_repeats = false;            ///< whether to look for objects that are the same
+  std::vector<Choice> choices;
+};
+
+/// How a scene, as represented, is to be traced.
+struct TracingPlan {
+  std::string tracer;
+  Precision precision = Precision::robust;
+  double seconds = 0;  ///< predicted, to build and to trace
+  double bytes = 0;    ///< predicted, of the tracer
+  double error = 0;    ///< predicted, in units of the tolerance: of arithmetic alone
+  std::vector<Choice> choices;
+};
+
+/// `prepare`: whether this is done once for many times, so that finding the model may cost what it will.
+ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
+                     bool prepare = false);
+
+/// `gpu`: whether the machine has one that is more than software; the hybrid then measures, and decides, as it goes.
+TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
+                         bool gpu);
+
+/// Seconds to build a tracer's structure over a scene and to ask it all rays.
+double predicted_seconds(const SceneStatistics& scene, const TracerCost& cost);
+
+/// The largest distance, in units of the tolerance, that an object's hits are moved by a tracer's arithmetic. Source:
+/// docs/accuracy.md; first-order models, not proofs.
+double predicted_error(const SceneStatistics& scene, const TracerCost& cost, const Tolerance& tolerance);
+
+}  // namespace rayengine

@@ -1,0 +1,21 @@
+#include "engine/plan/planned.h"
+
+#include "accel/stopwatch.h"
+
+namespace rayengine {
+
+Planned plan_scene(const Scene& scene, const PlanOptions& options) {
+  const Stopwatch watch;
+  const DeviceMeasurements& device = options.device ? *options.device : usual_device();
+  const SceneStatistics given = gather_statistics(scene, options.rays, options.coherent);
+  const ModelPlan model = plan_model(given, device, options.tolerance, options.prepare);
+  Planned result{make_model(scene, model, options.simplifier), {}, model.choices, 0};
+  const SceneStatistics made =
+      result.model.replaced.empty() ? given : gather_statistics(result.model.scene, options.rays, options.coherent);
+  result.tracing = plan_tracing(made, device, options.tolerance, options.gpu);
+  result.choices.insert(result.choices.end(), result.tracing.choices.begin(), result.tracing.choices.end());
+  result.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace rayengine

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "engine/plan/model.h"
+#include "engine/plan/plan.h"
+
+namespace rayengine {
+
+struct PlanOptions {
+  Tolerance tolerance;
+  double rays = 0;       ///< that will be asked for, about: see expected_rays()
+  bool coherent = true;  ///< whether most of them are the eye's or go to lights
+  bool prepare = false;  ///< find the best model whatever the finding costs; coarser meshes are kept for the next time
+  bool gpu = false;      ///< whether there is one that is more than software
+  Simplifier simplifier;
+  const DeviceMeasurements* device = nullptr;  ///< null: usual_device()
+};
+
+/// A scene made ready for a tolerance: what is to be traced, by what, and why.
+struct Planned {
+  Model model;
+  TracingPlan tracing;
+  std::vector<Choice> choices;  ///< of the model and of the tracing
+  double seconds = 0;           ///< that planning took, the making of the model included
+};
+
+/// Plans the model, makes it, and plans its tracing. Throws Error on a tolerance that is negative or not a number.
+Planned plan_scene(const Scene& scene, const PlanOptions& options);
+
+}  // namespace rayengine

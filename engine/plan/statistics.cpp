@@ -1,0 +1,105 @@
+#include "engine/plan/statistics.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "accel/tracer.h"
+#include "engine/plan/patches.h"
+
+namespace rayengine {
+namespace {
+
+double distance_to(const Box& box, const glm::dvec3& p) {
+  return glm::length(glm::max(glm::max(box.lower - p, p - box.upper), glm::dvec3(0)));
+}
+
+Box bounds_of_mesh(const Geometry& g, std::uint32_t object) {
+  if (g.objects.size() == 1) return g.bounds;
+  Box box;
+  const std::uint32_t first = g.objects[object].first, last = first + primitive_count(g, object);
+  for (std::uint32_t t = first; t < last; ++t)
+    for (int k = 0; k < 3; ++k) box.add(g.vertex(g.triangles[t][k]));
+  return box;
+}
+
+Box bounds_of(const Geometry& g, std::uint32_t object) {
+  const Object& o = g.objects[object];
+  if (o.kind == Object::Kind::mesh) return bounds_of_mesh(g, object);
+  if (o.kind == Object::Kind::quadric) return bounds(g, g.quadrics[o.first]);
+  Box box;
+  for (std::size_t i = o.first; i < g.instances.size() && g.instances[i].object == object; ++i)
+    box.add(bounds(g, g.instances[i]));
+  return box;
+}
+
+/// What is 1 in object space is at least so much in the world; a general form's size is known by its bounds alone.
+double thickness(const Quadric& q, double radius) {
+  const glm::dmat3& m = q.to_object.linear;
+  const double unit = 1 / std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+  return q.type == QuadricType::general ? std::min(unit, radius) : unit;
+}
+
+ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const glm::dvec3& eye) {
+  const Object& o = g.objects[object];
+  const Box box = bounds_of(g, object);
+  ObjectStatistics result{.kind = o.kind};
+  result.radius = box.finite() ? glm::length(box.size()) / 2 : box.empty() ? 0 : infinity;
+  result.distance = box.empty() ? infinity : distance_to(box, eye);
+  if (o.kind == Object::Kind::quadric) {
+    result.type = g.quadrics[o.first].type;
+    result.thickness = thickness(g.quadrics[o.first], result.radius);
+  }
+  if (o.kind == Object::Kind::mesh) {
+    const Patches seen = look_at_patches(g, object);
+    result.triangles = primitive_count(g, object);
+    result.spacing = std::sqrt(2 * seen.area);
+    result.quadric_share = seen.quadric_share;
+    result.ball_share = seen.ball_share;
+  }
+  return result;
+}
+
+}  // namespace
+
+void check(const Tolerance& tolerance) {
+  if (!(tolerance.value >= 0 && tolerance.value < infinity))
+    throw Error("a tolerance of " + std::to_string(tolerance.value) + " says nothing: give 0, which is exact, or more");
+}
+
+SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent) {
+  const Geometry& g = *scene.geometry;
+  const Camera& camera = scene.camera;
+  SceneStatistics result;
+  result.objects.resize(g.objects.size());
+  tbb::parallel_for(std::size_t{0}, g.objects.size(),
+                    [&](std::size_t i) { result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), camera.from); });
+  result.triangles = g.triangles.size();
+  result.quadrics = g.quadrics.size();
+  result.instances = g.instances.size();
+  for (const Quadric& q : g.quadrics) ++result.quadrics_of[static_cast<std::size_t>(q.type)];
+  const glm::dvec3 eye = glm::abs(camera.from);
+  result.extent = std::max({g.bounds.finite() ? g.bounds.extent() : 0, eye.x, eye.y, eye.z});
+  result.pixel = pixel_angle(camera);
+  result.rays = rays;
+  result.coherent = coherent;
+  return result;
+}
+
+double pixel_angle(const Camera& camera) { return 2 * std::tan(glm::radians(camera.fov) / 2) / camera.size.y; }
+
+double expected_rays(const Scene& scene, int spp) {
+  const bool shines =
+      std::ranges::any_of(scene.materials, [](const Material& m) { return m.reflect + m.transmit > 0; });
+  const double pixels = static_cast<double>(scene.camera.size.x) * scene.camera.size.y * spp;
+  return pixels * (1 + static_cast<double>(scene.lights.size())) * (shines ? 2 : 1);
+}
+
+double allowance(const Tolerance& tolerance, const ObjectStatistics& object, double pixel) {
+  return tolerance.value * (tolerance.unit == Tolerance::Unit::pixels ? pixel * object.distance : 1);
+}
+
+}  // namespace rayengine

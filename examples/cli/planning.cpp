@@ -1,0 +1,184 @@
+#include "examples/cli/planning.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "accel/cache_folder.h"
+#include "engine/load/simplifier.h"
+#include "engine/load/simplify.h"
+#include "engine/measure/measure_device.h"
+#include "gpu/device/hardware.h"
+
+namespace rayengine::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path device_file() {
+  const fs::path folder = cache_folder();
+  return folder.empty() ? folder : folder / "device.txt";
+}
+
+/// Measured here, or the usual.
+DeviceMeasurements known_device(const Common& common) {
+  std::ifstream file(device_file());
+  if (!file) return usual_device();
+  std::ostringstream text;
+  text << file.rdbuf();
+  try {
+    return device_from_text(text.str());
+  } catch (const Error& error) {
+    note(common, error.what());
+    return usual_device();
+  }
+}
+
+const char* unit_name(const Tolerance& tolerance) { return tolerance.unit == Tolerance::Unit::pixels ? "px" : "units"; }
+
+std::string cost_text(double seconds) { return seconds < 0 ? "-" : seconds_text(seconds); }
+
+std::string error_text(double error, const char* unit) {
+  return error < 0 ? "-" : error == 0 ? "none" : fmt::format("{:.2g} {}", error, unit);
+}
+
+Json number(double value) { return value < 0 ? Json(nullptr) : Json(value); }
+
+constexpr std::array representation_names{"kept", "recognised", "recognised in parts", "simplified before",
+                                          "simplified"};
+
+const char* name_of(Representation r) { return representation_names[static_cast<std::size_t>(r)]; }
+
+std::string choice_text(const Choice& c, const char* unit) {
+  std::string text = fmt::format("{:<32} {:<32} {:>9} {:>10}   {}", c.subject, c.chosen, cost_text(c.seconds),
+                                 error_text(c.error, unit), c.instead.empty() ? "-" : c.instead);
+  if (c.instead_seconds >= 0)
+    text += fmt::format(" ({}, {})", cost_text(c.instead_seconds), error_text(c.instead_error, unit));
+  return text + fmt::format("\n  because {}\n", c.why);
+}
+
+std::string replaced_text(const Replacement& r) {
+  return fmt::format("  object {} {}: {} triangles became {}{} triangles, moved by at most {:.2g}\n", r.object,
+                     name_of(r.representation), count_text(r.triangles),
+                     r.quadrics ? count_text(r.quadrics) + " quadrics and " : "", count_text(r.triangles_left),
+                     r.distance);
+}
+
+Json to_json(const Choice& c) {
+  return {{"what", c.subject},
+          {"chosen", c.chosen},
+          {"seconds", number(c.seconds)},
+          {"error", number(c.error)},
+          {"instead_of", c.instead},
+          {"instead_seconds", number(c.instead_seconds)},
+          {"instead_error", number(c.instead_error)},
+          {"why", c.why}};
+}
+
+Json to_json(const Replacement& r) {
+  return {{"object", r.object},       {"how", name_of(r.representation)},
+          {"triangles", r.triangles}, {"triangles_left", r.triangles_left},
+          {"quadrics", r.quadrics},   {"distance", r.distance}};
+}
+
+Tolerance tolerance_of(const PlanningOptions& options) { return {*options.tolerance, options.unit}; }
+
+}  // namespace
+
+void add_planning(CLI::App* app, PlanningOptions& options) {
+  const std::string unit = options.unit == Tolerance::Unit::pixels ? "pixels" : "units of the scene";
+  app->add_option_function<double>(
+         "--tolerance",
+         [&](double value) {
+           if (!(value >= 0 && value < infinity))
+             throw CLI::ValidationError("--tolerance", "must be 0, which is exact, or more");
+           options.tolerance = value;
+         },
+         "Do the least work that keeps within so many " + unit + "; 0 is exact (see 'rayengine plan')")
+      ->type_name("X");
+  CLI::Option* verify =
+      add_count(app, "--verify", options.verify, {1, 1 << 26},
+                "Ask so many of the rays of exact arithmetic too, and fail where the tolerance is not kept");
+  if (!options.tolerance) verify->needs("--tolerance");
+}
+
+PlannedScene::PlannedScene(const PlanningOptions& options, Scene scene, double rays, bool coherent,
+                           const Common& common)
+    : options_(options), common_(common), given_(std::move(scene)) {
+  if (!options.tolerance) return;
+  const DeviceMeasurements device = known_device(common);
+  plan_ = plan_scene(given_, {.tolerance = tolerance_of(options),
+                              .rays = rays,
+                              .coherent = coherent,
+                              .prepare = options.prepare,
+                              .gpu = may_have_gpu(),
+                              .simplifier = cached_simplifier(),
+                              .device = &device});
+  if (options.verify == 0) given_ = {};
+}
+
+MadeTracer PlannedScene::make_tracer(const std::string& tracer, std::optional<Precision> precision) const {
+  const bool free = plan_ && tracer == "auto" && !precision;
+  const Precision usual = plan_ && *options_.tolerance == 0 ? Precision::certified : Precision::robust;
+  return cli::make_tracer(free ? plan_->tracing.tracer : tracer, scene().geometry,
+                          free ? plan_->tracing.precision : precision.value_or(usual), common_);
+}
+
+Json PlannedScene::verify(Tracer& tracer, const std::vector<Ray>& rays) const {
+  const Tolerance tolerance = tolerance_of(options_);
+  const Verification v = rayengine::verify(given_, plan_->model.scene, tracer, tolerance, rays);
+  const std::string found =
+      fmt::format("verified {} rays, {} hits: {} agree only beside, at most {:.2g} {} off, {} farther than promised",
+                  count_text(v.rays), count_text(v.hits), count_text(v.beside), v.largest, unit_name(tolerance),
+                  count_text(v.broken));
+  if (v.broken > 0) {
+    const Ray& r = v.examples.front().ray;
+    throw Error(fmt::format("{}; one is {} {} {} {} {} {} {} {}", found, r.origin.x, r.origin.y, r.origin.z, r.tmin,
+                            r.direction.x, r.direction.y, r.direction.z, r.tmax));
+  }
+  note(common_, found);
+  return {{"rays", v.rays}, {"hits", v.hits}, {"beside", v.beside}, {"largest", v.largest}, {"broken", v.broken}};
+}
+
+std::string PlannedScene::text() const {
+  if (!plan_) return {};
+  const char* unit = unit_name(tolerance_of(options_));
+  std::string text = fmt::format("{:<32} {:<32} {:>9} {:>10}   {}\n", "what", "chosen", "cost", "error", "instead of");
+  for (const Choice& c : plan_->choices) text += choice_text(c, unit);
+  for (const Replacement& r : plan_->model.replaced) text += replaced_text(r);
+  return text + fmt::format("planned in {}; predicted: {} to build and trace, {} of memory\n",
+                            seconds_text(plan_->seconds), seconds_text(plan_->tracing.seconds),
+                            bytes_text(plan_->tracing.bytes));
+}
+
+Json PlannedScene::json() const {
+  if (!plan_) return nullptr;
+  Json choices = Json::array(), replaced = Json::array();
+  for (const Choice& c : plan_->choices) choices.push_back(to_json(c));
+  for (const Replacement& r : plan_->model.replaced) replaced.push_back(to_json(r));
+  return {{"tolerance", *options_.tolerance},
+          {"unit", unit_name(tolerance_of(options_))},
+          {"tracer", plan_->tracing.tracer},
+          {"precision", to_string(plan_->tracing.precision)},
+          {"predicted_s", plan_->tracing.seconds},
+          {"predicted_bytes", plan_->tracing.bytes},
+          {"predicted_error", plan_->tracing.error},
+          {"planning_s", plan_->seconds},
+          {"choices", choices},
+          {"replaced", replaced}};
+}
+
+void measure_machine(const Common& common) {
+  DeviceMeasurements device = measure_device(common.threads);
+  device.simplify = clustering_seconds / thread_count(common.threads);
+  const std::string text = to_text(device);
+  const fs::path file = device_file();
+  if (file.empty() || !write_cache_file(file, {std::as_bytes(std::span(text))}))
+    throw Error("the measurements of this machine cannot be kept: set XDG_CACHE_HOME to a folder that can be written");
+  note(common, "measured this machine; kept in " + file.string());
+}
+
+}  // namespace rayengine::cli

@@ -1,0 +1,238 @@
+// What a tolerance makes of a scene: the choices by numbers made up here, the models that carry them out, and the check
+// that the promise is kept, which must notice when it is not.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "engine/measure/tessellate.h"
+#include "engine/plan/patches.h"
+#include "engine/plan/planned.h"
+#include "engine/plan/verify.h"
+#include "engine/tracers.h"
+
+namespace rayengine {
+namespace {
+
+constexpr Tolerance half_pixel{0.5}, exact{0};
+
+ObjectStatistics far_mesh(std::uint32_t triangles, double spacing) {
+  return {.triangles = triangles, .radius = 1, .distance = 100, .spacing = spacing};
+}
+
+SceneStatistics scene_of(std::vector<ObjectStatistics> objects) {
+  SceneStatistics scene{.objects = std::move(objects), .pixel = 1e-3, .rays = 1e5};
+  for (const ObjectStatistics& o : scene.objects) {
+    scene.extent = std::max(scene.extent, o.distance + o.radius);
+    scene.triangles += o.triangles;
+    scene.quadrics += o.kind == Object::Kind::quadric;
+  }
+  return scene;
+}
+
+Representation chosen_for(const ObjectStatistics& o, const Tolerance& tolerance = half_pixel) {
+  return plan_model(scene_of({o}), usual_device(), tolerance).objects.at(0);
+}
+
+TEST(Plan, RefusesTolerancesThatSayNothing) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {-1e-9, nan, infinity, -infinity}) {
+    EXPECT_THROW(plan_model({}, usual_device(), {bad}), Error) << bad;
+    EXPECT_THROW(plan_tracing({}, usual_device(), {bad}, false), Error) << bad;
+    EXPECT_THROW(check({bad}), Error) << bad;
+  }
+}
+
+TEST(Plan, LooksForBallsOnlyWherePatchesLieOnThem) {
+  ObjectStatistics mesh = far_mesh(100000, 0.2);
+  EXPECT_EQ(chosen_for(mesh), Representation::kept);
+  mesh.ball_share = 1;
+  EXPECT_EQ(chosen_for(mesh), Representation::recognised);
+  EXPECT_EQ(chosen_for(mesh, exact), Representation::kept);
+  mesh.triangles = 100;
+  EXPECT_EQ(chosen_for(mesh), Representation::kept);
+}
+
+TEST(Plan, LooksAtPartsOnlyWhereRaysRepayIt) {
+  ObjectStatistics mesh = far_mesh(100000, 0.2);
+  mesh.quadric_share = 1;
+  EXPECT_EQ(chosen_for(mesh), Representation::kept);
+  DeviceMeasurements quick = usual_device();
+  quick.recognise_parts = 0;
+  EXPECT_EQ(plan_model(scene_of({mesh}), quick, half_pixel).objects[0], Representation::recognised_parts);
+}
+
+TEST(Plan, AllowancesFollowTheDistance) {
+  ObjectStatistics near = far_mesh(1000, 1), far = near, within = near;
+  far.distance = 200;
+  within.distance = 0;
+  const ModelPlan plan = plan_model(scene_of({near, far, within}), usual_device(), half_pixel);
+  EXPECT_GT(plan.allowances[0], 0.3 * 0.5 * 1e-3 * 100);
+  EXPECT_LE(plan.allowances[0], 0.5 * 1e-3 * 100);
+  EXPECT_DOUBLE_EQ(plan.allowances[1], 2 * plan.allowances[0]);
+  EXPECT_EQ(plan.allowances[2], 0);
+}
+
+TEST(Plan, ZeroIsProven) {
+  const TracingPlan plan = plan_tracing(scene_of({far_mesh(1000, 1)}), usual_device(), exact, false);
+  EXPECT_EQ(plan.precision, Precision::certified);
+  EXPECT_EQ(plan.error, 0);
+}
+
+/// A ball so far away that single precision cannot tell its radius.
+TEST(Plan, TakesThePrecisionThatTheDistanceNeeds) {
+  ObjectStatistics ball{.kind = Object::Kind::quadric, .radius = 1, .thickness = 1, .distance = 10};
+  const TracerCost* fast = nullptr;
+  for (const TracerCost& t : usual_device().tracers)
+    if (t.precision == Precision::fast) fast = &t;
+  ASSERT_TRUE(fast);
+  const double near = predicted_error(scene_of({ball}), *fast, half_pixel);
+  ball.distance = 1e5;
+  EXPECT_GT(predicted_error(scene_of({ball}), *fast, half_pixel), 1000 * near);
+  const TracingPlan plan = plan_tracing(scene_of({ball}), usual_device(), half_pixel, false);
+  EXPECT_NE(plan.precision, Precision::fast);
+  EXPECT_LE(plan.error, 0.1 * half_pixel.value);
+}
+
+TEST(Plan, EveryChoiceSaysWhy) {
+  SceneStatistics scene = scene_of({far_mesh(100000, 0.2), far_mesh(10, 1)});
+  scene.objects[0].ball_share = 1;
+  for (const Choice& c : plan_model(scene, usual_device(), half_pixel).choices) {
+    EXPECT_FALSE(c.subject.empty() || c.chosen.empty() || c.why.empty());
+    EXPECT_GE(c.seconds, 0);
+  }
+  const TracingPlan tracing = plan_tracing(scene, usual_device(), half_pixel, false);
+  EXPECT_FALSE(tracing.choices.at(0).instead.empty());
+  EXPECT_GT(tracing.seconds, 0);
+}
+
+TEST(Plan, LeavesTheProcessorHalfToTheHybridWhereThereIsAGpu) {
+  const SceneStatistics scene = scene_of({far_mesh(100000, 0.2)});
+  EXPECT_EQ(plan_tracing(scene, usual_device(), half_pixel, true).tracer, "auto");
+  EXPECT_EQ(plan_tracing(scene, usual_device(), half_pixel, false).tracer, "embree");
+}
+
+TEST(DeviceMeasurements, AreReadAsWritten) {
+  const DeviceMeasurements& device = usual_device();
+  const DeviceMeasurements again = device_from_text(to_text(device));
+  EXPECT_EQ(to_text(again), to_text(device));
+  ASSERT_EQ(again.tracers.size(), device.tracers.size());
+  EXPECT_EQ(again.tracers[1].quadric.scattered[1], device.tracers[1].quadric.scattered[1]);
+}
+
+TEST(DeviceMeasurements, OfAnotherFormAreRefused) {
+  const std::string good = to_text(usual_device());
+  for (const std::string& bad : {std::string(), std::string("nonsense"), good.substr(0, good.size() / 2),
+                                 good.substr(0, good.find('\n')), good + "embree sharp 1", "x" + good})
+    EXPECT_THROW(device_from_text(bad), Error) << bad;
+}
+
+/// Many balls as one mesh of triangles, 512 each.
+Scene tessellated_balls() {
+  GeometryBuilder balls, builder;
+  for (int i = 0; i < 27; ++i)
+    balls.add(QuadricShape{}, 0, Affine::translate({3 * (i % 3), 3 * (i / 3 % 3), 3 * (i / 9)}));
+  const auto triangles = tessellate(*balls.build(), 3)->geometry;
+  Mesh all;
+  for (std::uint32_t object = 0; object < triangles->objects.size(); ++object) {
+    const Mesh ball = mesh_of(*triangles, object);
+    const auto base = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), ball.positions.begin(), ball.positions.end());
+    for (const glm::uvec3& t : ball.triangles) all.triangles.push_back(t + base);
+  }
+  builder.add(QuadricShape{QuadricType::plane}, 0, Affine::translate({0, 0, -2}));
+  builder.add(all);
+  Scene scene;
+  scene.geometry = builder.build();
+  scene.camera = {.from = {100, -180, 80}, .at = {3, 3, 3}, .fov = 4, .size = {64, 64}};
+  return scene;
+}
+
+TEST(Patches, KnowBallsFromTubesAndFromNeither) {
+  const auto look = [](const QuadricShape& shape, const Affine& map) {
+    GeometryBuilder builder;
+    builder.add(shape, 0, map);
+    return look_at_patches(*tessellate(*builder.build(), 4)->geometry, 0);
+  };
+  const Affine somewhere = Affine::translate({100, 20, 3}) * Affine::scale({1, 2, 0.5});
+  EXPECT_GT(look({}, somewhere).ball_share, 0.9);
+  const Patches tube = look({QuadricType::hyperboloid1}, somewhere);
+  EXPECT_GT(tube.quadric_share, 0.9);
+  EXPECT_LT(tube.ball_share, 0.1);
+  Mesh bumpy = subdivided_sphere(5);
+  for (glm::dvec3& p : bumpy.positions) p *= 1 + 0.01 * std::sin(40 * p.x) * std::sin(37 * p.y) * std::sin(41 * p.z);
+  GeometryBuilder builder;
+  builder.add(bumpy);
+  EXPECT_LT(look_at_patches(*builder.build(), 0).quadric_share, 0.2);
+}
+
+TEST(PlannedScene, PutsBallsInPlaceOfTriangles) {
+  const Scene scene = tessellated_balls();
+  const Planned planned = plan_scene(scene, {.tolerance = half_pixel, .rays = expected_rays(scene, 1)});
+  ASSERT_EQ(planned.model.replaced.size(), 1u);
+  EXPECT_EQ(planned.model.replaced[0].object, 1u);
+  EXPECT_EQ(planned.model.replaced[0].quadrics, 27u);
+  EXPECT_EQ(planned.model.replaced[0].triangles_left, 0u);
+  const Scene& model = planned.model.scene;
+  EXPECT_EQ(model.geometry->quadrics.size(), 28u);
+  EXPECT_EQ(model.object_numbers.front(), 0u);
+  EXPECT_EQ(model.object_numbers.back(), 1u);
+  const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+  const Verification found = verify(scene, model, *tracer, half_pixel, random_camera_rays(scene.camera, 20000));
+  EXPECT_EQ(found.broken, 0u);
+  EXPECT_GT(found.hits, 10000u);
+  EXPECT_GT(found.largest, 0.01);  // the tessellation is seen to differ
+}
+
+TEST(PlannedScene, AtZeroIsTheSceneItself) {
+  const Scene scene = tessellated_balls();
+  const Planned planned = plan_scene(scene, {.tolerance = exact, .rays = 1e6});
+  EXPECT_EQ(planned.model.scene.geometry, scene.geometry);
+  EXPECT_TRUE(planned.model.replaced.empty());
+  const auto tracer = make_tracer(planned.tracing.tracer, scene.geometry, {planned.tracing.precision});
+  const Verification found = verify(scene, scene, *tracer, exact, random_camera_rays(scene.camera, 5000));
+  EXPECT_EQ(found.broken, 0u);
+}
+
+/// A model whose balls are a little too large.
+Scene swollen(double by) {
+  Scene model = tessellated_balls();
+  GeometryBuilder builder;
+  builder.add(*model.geometry, 0);
+  for (int i = 0; i < 27; ++i)
+    builder.add(QuadricShape{}, 0,
+                Affine::translate({3 * (i % 3), 3 * (i / 3 % 3), 3 * (i / 9)}) * Affine::scale(glm::dvec3(1 + by)));
+  model.geometry = builder.build();
+  model.object_numbers.assign(28, 1);
+  model.object_numbers[0] = 0;
+  return model;
+}
+
+TEST(Verification, SeesWhatIsFartherThanPromised) {
+  const Scene scene = tessellated_balls();
+  const double pixel = pixel_angle(scene.camera) * glm::distance(scene.camera.from, glm::dvec3(3));
+  const auto broken = [&](double pixels, const Tolerance& tolerance) {
+    const Scene model = swollen(pixels * pixel);
+    const auto tracer = make_tracer("embree", model.geometry);
+    return verify(scene, model, *tracer, tolerance, random_camera_rays(scene.camera, 4000)).broken;
+  };
+  EXPECT_EQ(broken(0.2, half_pixel), 0u);
+  EXPECT_GT(broken(0.8, half_pixel), 700u);
+  EXPECT_GT(broken(0, exact), 1000u);
+  EXPECT_EQ(broken(0.2, {0.4 * pixel, Tolerance::Unit::scene}), 0u);
+  EXPECT_GT(broken(0.8, {0.5 * pixel, Tolerance::Unit::scene}), 700u);
+}
+
+TEST(Verification, SeesObjectsChanged) {
+  const Scene scene = tessellated_balls();
+  Scene model = scene;
+  model.object_numbers = {1, 0};
+  const auto tracer = make_tracer("embree", scene.geometry);
+  EXPECT_GT(verify(scene, model, *tracer, half_pixel, random_camera_rays(scene.camera, 1000)).broken, 900u);
+}
+
+}  // namespace
+}  // namespace rayengine
