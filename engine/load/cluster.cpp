@@ -23,12 +23,16 @@ constexpr double widest = 4;                // cells of level 0, in limits; each
 constexpr std::uint8_t finest = 3;          // cells of half a limit
 constexpr std::uint8_t alone = finest + 1;  // vertices that are their own cluster
 constexpr int most_rounds = 12;
-constexpr int most_tried = 32;  // coarse triangles for each part of an original one
-constexpr int most_nodes = 32;  // along an edge of a coarse one
+constexpr int most_tried = 32;       // coarse triangles for each part of an original one
+constexpr double near_enough = 0.3;  // of a limit: no nearer coarse triangle is looked for
+constexpr int most_nodes = 32;       // along an edge of a coarse one
 
 constexpr std::size_t sample = 1024;      // triangles that are looked at first
 constexpr double hopeless_share = 0.5;    // of them that fail
 constexpr double worthwhile_share = 0.5;  // of triangles that may be left
+
+/// No point of a triangle is farther from all of its corners than its longest edge by this.
+constexpr double root_3 = std::numbers::sqrt3;
 
 glm::dvec3 area_vector(const Corners& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
 
@@ -54,6 +58,7 @@ struct Clusters {
   std::vector<std::uint32_t> of;              // by vertex; no_id where no triangle uses it
   std::vector<std::uint32_t> first, members;  // vertices of cluster c: members[first[c], first[c + 1])
   std::vector<std::uint32_t> representative;  // by cluster
+  std::vector<glm::dvec3> normals;            // of all triangles at its vertices, not normalised
 
   std::span<const std::uint32_t> members_of(std::uint32_t c) const {
     return {members.data() + first[c], members.data() + first[c + 1]};
@@ -91,7 +96,8 @@ class Clustering {
         limit_(limit),
         normals_(positions.size(), glm::dvec3(0)),
         level_(positions.size(), unused),
-        stir_(positions.size(), Stir::own) {
+        stir_(positions.size(), Stir::own),
+        nearness_(positions.size(), infinity) {
     for (const glm::uvec3& t : triangles_)
       for (int k = 0; k < 3; ++k) {
         normals_[t[k]] += area_vector(corners(positions_, t));
@@ -101,8 +107,9 @@ class Clustering {
   }
 
   std::vector<glm::uvec3> run() {
+    sort_into_cells();
     for (int round = 0; round < most_rounds; ++round) {
-      partition();
+      number();
       collect();
       if (double(coarse_.size()) > worthwhile_share * double(triangles_.size())) break;  // more cells leave more
       if (!refine(round)) return result();
@@ -124,29 +131,43 @@ class Clustering {
     return hash;
   }
 
-  void partition() {
-    std::vector<Key> keys;
+  void sort_into_cells() {
     for (std::uint32_t v = 0; v < positions_.size(); ++v)
-      if (level_[v] != unused) keys.push_back({0, v});
-    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i].first = cell(keys[i].second); });
-    tbb::parallel_sort(keys);
-    clusters_ = {std::vector<std::uint32_t>(positions_.size(), no_id), {}, {}, {}};
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      if (i == 0 || keys[i].first != keys[i - 1].first) clusters_.first.push_back(static_cast<std::uint32_t>(i));
-      clusters_.of[keys[i].second] = static_cast<std::uint32_t>(clusters_.first.size() - 1);
-      clusters_.members.push_back(keys[i].second);
+      if (level_[v] != unused) keys_.push_back({0, v});
+    tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t i) { keys_[i].first = cell(keys_[i].second); });
+    tbb::parallel_sort(keys_);
+  }
+
+  /// Makes clusters of equal keys.
+  void number() {
+    clusters_ = {std::vector<std::uint32_t>(positions_.size(), no_id), {}, {}, {}, {}};
+    clusters_.members.reserve(keys_.size());
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (i == 0 || keys_[i].first != keys_[i - 1].first) clusters_.first.push_back(static_cast<std::uint32_t>(i));
+      clusters_.of[keys_[i].second] = static_cast<std::uint32_t>(clusters_.first.size() - 1);
+      clusters_.members.push_back(keys_[i].second);
     }
     clusters_.representative.resize(clusters_.first.size());
-    clusters_.first.push_back(static_cast<std::uint32_t>(keys.size()));
+    clusters_.normals.resize(clusters_.first.size());
+    clusters_.first.push_back(static_cast<std::uint32_t>(keys_.size()));
     tbb::parallel_for(std::size_t{0}, clusters_.count(),
                       [&](std::size_t c) { represent(static_cast<std::uint32_t>(c)); });
+  }
+
+  /// Cells lie within those that they are halves of, so that a cluster is split without a look at the others.
+  void split(std::uint32_t cluster) {
+    const auto first = keys_.begin() + clusters_.first[cluster], last = keys_.begin() + clusters_.first[cluster + 1];
+    std::for_each(first, last, [&](Key& key) { key.first = cell(key.second); });
+    std::sort(first, last);
   }
 
   /// By the vertex that is nearest to the mean, so that no vertex is moved off the surface.
   void represent(std::uint32_t c) {
     const auto members = clusters_.members_of(c);
-    glm::dvec3 mean(0);
-    for (const std::uint32_t v : members) mean += positions_[v] / static_cast<double>(members.size());
+    glm::dvec3 mean(0), normal(0);
+    for (const std::uint32_t v : members)
+      mean += positions_[v] / static_cast<double>(members.size()), normal += normals_[v];
+    clusters_.normals[c] = normal;
     double least = infinity;
     for (const std::uint32_t v : members)
       if (const glm::dvec3 d = positions_[v] - mean; glm::dot(d, d) < least)
@@ -201,42 +222,55 @@ class Clustering {
     return std::ranges::all_of(quartered(whole), [&](const Corners& part) { return is_near_coarse(part, clusters); });
   }
 
-  /// Whether the node is within half a limit of an original triangle at the vertex of a cluster that is nearest to it.
-  bool is_near_original(const glm::dvec3& node, std::uint32_t cluster) const {
+  /// A bound on a vertex's distance from the coarse triangles at its cluster.
+  double distance_from_coarse(std::uint32_t v) const {
+    double least = infinity;
+    int tried = 0;
+    for (const std::uint32_t k : stars_[clusters_.of[v]]) {
+      least = std::min(least, squared_distance(positions_[v], coarse_corners_[k]));
+      if (least <= near_enough * near_enough * limit_ * limit_ || ++tried == most_tried) break;
+    }
+    return std::sqrt(least);
+  }
+
+  /// Whether the node is that near to an original triangle at the vertex of a cluster that is nearest to it.
+  bool is_near_original(const glm::dvec3& node, std::uint32_t cluster, double squared_radius) const {
     double least = infinity;
     std::uint32_t nearest = 0;
     for (const std::uint32_t v : clusters_.members_of(cluster))
       if (const glm::dvec3 d = positions_[v] - node; glm::dot(d, d) < least) least = glm::dot(d, d), nearest = v;
     return std::ranges::any_of(of_vertex_[nearest], [&](std::uint32_t t) {
-      return squared_distance(node, corners(positions_, triangles_[t])) <= 0.25 * limit_ * limit_;
+      return squared_distance(node, corners(positions_, triangles_[t])) <= squared_radius;
     });
   }
 
-  /// Whether all of a coarse triangle is near the original: near one triangle of it, or cut into parts so small that it
-  /// is enough for their corners to be near.
-  bool is_founded(std::size_t index) const {
-    const CoarseTriangle& k = coarse_[index];
+  /// Whether all of a coarse triangle is near the original: cut into parts of which no point is farther than `cover`
+  /// limits from a corner, all corners are as near to the original as the rest of the limit.
+  bool is_covered(std::size_t index, double cover) const {
     const Corners& c = coarse_corners_[index];
-    if (is_within(c, corners(positions_, triangles_[k.source]), limit_ * limit_)) return true;
-    // No point of a triangle is farther from its corners than its longest edge by the root of three.
-    const double n = std::ceil(longest_edge(c) / (0.5 * limit_ * std::numbers::sqrt3));
-    if (n > most_nodes || !faces_as_before(k, c)) return false;
+    const glm::uvec3& clusters = coarse_[index].corners;
+    const double n = std::ceil(longest_edge(c) / (cover * limit_ * root_3)), radius = (1 - cover) * limit_;
+    if (n > most_nodes) return false;
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j) {
         const glm::dvec3 node = ((n - i - j) * c[0] + double(i) * c[1] + double(j) * c[2]) / n;
         const int corner = 2 * i + j >= n ? 1 : i + 2 * j >= n ? 2 : 0;  // whose cluster is the likeliest
-        if (!is_near_original(node, k.corners[corner]) && !is_near_original(node, k.corners[(corner + 1) % 3]) &&
-            !is_near_original(node, k.corners[(corner + 2) % 3]))
-          return false;
+        bool is_near = false;
+        for (int k = 0; k < 3 && !is_near; ++k)
+          is_near = is_near_original(node, clusters[(corner + k) % 3], radius * radius);
+        if (!is_near) return false;
       }
     return true;
   }
 
-  bool faces_as_before(const CoarseTriangle& k, const Corners& c) const {
-    glm::dvec3 before(0);
-    for (int i = 0; i < 3; ++i)
-      for (const std::uint32_t v : clusters_.members_of(k.corners[i])) before += normals_[v];
-    return glm::dot(area_vector(c), before) >= 0;
+  /// Whether a coarse triangle is near the original, one triangle of it or more, and faces as it does.
+  bool is_founded(std::size_t index) const {
+    const CoarseTriangle& k = coarse_[index];
+    const Corners& c = coarse_corners_[index];
+    if (is_within(c, corners(positions_, triangles_[k.source]), limit_ * limit_)) return true;
+    const glm::dvec3 before =
+        clusters_.normals[k.corners.x] + clusters_.normals[k.corners.y] + clusters_.normals[k.corners.z];
+    return glm::dot(area_vector(c), before) >= 0 && (is_covered(index, 0.75) || is_covered(index, 0.5));
   }
 
   bool is_new(const CoarseTriangle& k) const {
@@ -244,7 +278,9 @@ class Clustering {
                      stir_[clusters_.representative[k.corners.z]]}) == Stir::own;
   }
   bool is_lost(const glm::uvec3& t) const {
-    return std::max({stir_[t.x], stir_[t.y], stir_[t.z]}) > Stir::none && !is_kept(t);
+    if (std::max({stir_[t.x], stir_[t.y], stir_[t.z]}) == Stir::none) return false;
+    const double corner = std::max({nearness_[t.x], nearness_[t.y], nearness_[t.z]});
+    return corner + longest_edge(corners(positions_, t)) / root_3 > limit_ && !is_kept(t);
   }
   bool is_unfounded(std::size_t k) const { return is_new(coarse_[k]) && !is_founded(k); }
 
@@ -259,7 +295,11 @@ class Clustering {
   }
 
   /// Clusters where the proof fails, of those where it has to be made anew.
-  std::vector<char> failures() const {
+  std::vector<char> failures() {
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(positions_.size()), [&](std::uint32_t v) {
+      if (stir_[v] != Stir::none && level_[v] != unused) nearness_[v] = distance_from_coarse(v);
+    });
+
     std::vector<char> lost(triangles_.size()), unfounded(coarse_.size()), fails(clusters_.count());
     tbb::parallel_for(std::size_t{0}, lost.size(), [&](std::size_t i) { lost[i] = is_lost(triangles_[i]); });
     tbb::parallel_for(std::size_t{0}, unfounded.size(), [&](std::size_t k) { unfounded[k] = is_unfounded(k); });
@@ -279,7 +319,9 @@ class Clustering {
         for (int i = 0; i < 3; ++i) touched[k.corners[i]] = true;
     for (std::uint32_t v = 0; v < positions_.size(); ++v) {
       const std::uint32_t c = clusters_.of[v];
-      if (c != no_id) stir_[v] = fails[c] ? Stir::own : touched[c] ? Stir::neighbour : Stir::none;
+      if (c == no_id) continue;
+      stir_[v] = fails[c] ? Stir::own : touched[c] ? Stir::neighbour : Stir::none;
+      if (stir_[v] != Stir::none) nearness_[v] = infinity;
     }
   }
 
@@ -288,10 +330,13 @@ class Clustering {
     const bool hopeless = is_hopeless();
     const std::vector<char> fails = hopeless ? std::vector<char>(clusters_.count(), true) : failures();
     stir(fails);
-    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
-      if (level_[v] >= alone || !fails[clusters_.of[v]]) continue;
-      level_[v] = round < most_rounds / 2 ? std::min<std::uint8_t>(level_[v] + (hopeless ? 2 : 1), alone) : alone;
-    }
+    const int step = round >= most_rounds / 2 ? alone : hopeless ? 2 : 1;
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(clusters_.count()), [&](std::uint32_t c) {
+      if (!fails[c]) return;
+      for (const std::uint32_t v : clusters_.members_of(c))
+        level_[v] = static_cast<std::uint8_t>(std::min<int>(level_[v] + step, alone));
+      split(c);
+    });
     return std::ranges::count(fails, true) > 0;
   }
 
@@ -308,13 +353,15 @@ class Clustering {
   const double limit_;
   std::vector<glm::dvec3> normals_;  // by vertex, not normalised
   std::vector<std::uint8_t> level_;  // by vertex
+  std::vector<Key> keys_;            // equal ones side by side
   Clusters clusters_;
   std::vector<CoarseTriangle> coarse_;
   std::vector<Corners> coarse_corners_;
   Incidence of_vertex_;  // original triangles
   Incidence stars_;      // coarse triangles of a cluster
   enum class Stir : char { none, neighbour, own };
-  std::vector<Stir> stir_;  // by vertex: what happened to its cluster in the round before
+  std::vector<Stir> stir_;        // by vertex: what happened to its cluster in the round before
+  std::vector<double> nearness_;  // by vertex: a bound on its distance from the coarse triangles
 };
 
 }  // namespace

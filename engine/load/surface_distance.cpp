@@ -43,21 +43,51 @@ std::array<Corners, 4> quartered(const Corners& c) {
   return {{{c[0], ab, ca}, {ab, c[1], bc}, {ca, bc, c[2]}, {ab, bc, ca}}};
 }
 
-double squared_distance(const glm::dvec3& p, const Corners& t) {
-  const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const glm::dvec3 n = glm::cross(ab, ac);
-  const double area = squared(n), v = glm::dot(glm::cross(ap, ac), n), w = glm::dot(glm::cross(ab, ap), n);
-  const bool has_normal = area > 1e-20 * squared(ab) * squared(ac);
-  if (has_normal && v >= 0 && w >= 0 && v + w <= area) {
-    const double height = glm::dot(ap, n);
-    return height * height / area;
+namespace {
+
+/// What every point's distance from a triangle needs.
+struct Plane {
+  glm::dvec3 ab, ac, n;  // two sides, and their product
+  double area;           // squared length of n
+  bool has_normal;
+
+  explicit Plane(const Corners& t)
+      : ab(t[1] - t[0]),
+        ac(t[2] - t[0]),
+        n(glm::cross(ab, ac)),
+        area(squared(n)),
+        has_normal(area > 1e-20 * squared(ab) * squared(ac)) {}
+
+  double height(const glm::dvec3& ap) const { return glm::dot(ap, n); }
+  bool is_over(const glm::dvec3& ap) const {
+    const double v = glm::dot(glm::cross(ap, ac), n), w = glm::dot(glm::cross(ab, ap), n);
+    return v >= 0 && w >= 0 && v + w <= area;
   }
+};
+
+double to_edges(const glm::dvec3& p, const Corners& t) {
   return std::min({to_segment(p, t[0], t[1]), to_segment(p, t[1], t[2]), to_segment(p, t[2], t[0])});
 }
 
+}  // namespace
+
+double squared_distance(const glm::dvec3& p, const Corners& t) {
+  const Plane plane(t);
+  const glm::dvec3 ap = p - t[0];
+  if (!plane.has_normal || !plane.is_over(ap)) return to_edges(p, t);
+  const double height = plane.height(ap);
+  return height * height / plane.area;
+}
+
 bool is_within(const Corners& from, const Corners& to, double square) {
-  return squared_distance(from[0], to) <= square && squared_distance(from[1], to) <= square &&
-         squared_distance(from[2], to) <= square;
+  const Plane plane(to);
+  for (const glm::dvec3& p : from) {
+    const glm::dvec3 ap = p - to[0];
+    const double height = plane.height(ap);
+    if (plane.has_normal && height * height > square * plane.area) return false;
+    if (!(plane.has_normal && plane.is_over(ap)) && to_edges(p, to) > square) return false;
+  }
+  return true;
 }
 
 double squared_reach(const Corners& from, const Corners& to) {
