@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 
 #include "engine/measure/tessellate.h"
 #include "engine/plan/patches.h"
@@ -185,6 +186,52 @@ TEST(PlannedScene, PutsBallsInPlaceOfTriangles) {
   EXPECT_EQ(found.broken, 0u);
   EXPECT_GT(found.hits, 10000u);
   EXPECT_GT(found.largest, 0.01);  // the tessellation is seen to differ
+}
+
+/// A pipe of two tubes, whose ends are rings: no quadric has their outline, so that triangles stay beside quadrics.
+Mesh pipe(std::uint32_t segments, double inner) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    const double angle = 2 * std::numbers::pi * i / segments;
+    for (const double r : {1.0, inner})
+      for (const double z : {0.0, 2.0}) mesh.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.emplace_back(a, b, c);
+    mesh.triangles.emplace_back(a, c, d);
+  };
+  // Corners within a segment's four of each face's quadrilateral: from here, from the next one, and back.
+  const std::uint32_t faces[4][4] = {{0, 0, 1, 1}, {3, 3, 2, 2}, {1, 1, 3, 3}, {2, 2, 0, 0}};
+  for (const auto& f : faces)  // outside, inside, upper end, lower end
+    for (std::uint32_t i = 0; i < segments; ++i) {
+      const std::uint32_t here = 4 * i, next = 4 * ((i + 1) % segments);
+      quad(here + f[0], next + f[1], next + f[2], here + f[3]);
+    }
+  return mesh;
+}
+
+/// A machine on which triangles cost so much that all are replaced that can be.
+DeviceMeasurements eager_device() {
+  DeviceMeasurements device = usual_device();
+  device.recognise_parts = 0;
+  for (TracerCost& cost : device.tracers) cost.triangle.build *= 1e6;
+  return device;
+}
+
+TEST(PlannedScene, HasNoCracksBetweenQuadricsAndTriangles) {
+  Scene scene;
+  GeometryBuilder builder;
+  builder.add(pipe(96, 0.7));
+  scene.geometry = builder.build();
+  scene.camera = {.from = {3, 0.5, 20}, .at = {0, 0, 1}, .up = {0, 1, 0}, .fov = 7, .size = {512, 512}};
+  const DeviceMeasurements device = eager_device();
+  const Planned planned = plan_scene(scene, {.tolerance = half_pixel, .rays = 1e6, .device = &device});
+  ASSERT_EQ(planned.model.replaced.size(), 1u);
+  const auto tracer = make_tracer("bvh", planned.model.scene.geometry);
+  const auto rays = random_camera_rays(scene.camera, 200000);
+  const Verification found = verify(scene, planned.model.scene, *tracer, half_pixel, rays);
+  EXPECT_EQ(found.broken, 0u);
+  EXPECT_GT(found.hits, 20000u);
 }
 
 TEST(PlannedScene, AtZeroIsTheSceneItself) {

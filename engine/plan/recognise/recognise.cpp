@@ -10,6 +10,7 @@
 #include "accel/tracer.h"
 #include "engine/plan/recognise/caps.h"
 #include "engine/plan/recognise/check.h"
+#include "engine/plan/recognise/cracks.h"
 #include "engine/plan/recognise/doubled.h"
 #include "engine/plan/recognise/fit.h"
 #include "engine/plan/recognise/grow.h"
@@ -65,8 +66,11 @@ class Recogniser {
       find_patches(mesh, flat);
       find_between_plates(mesh);
       grow(mesh);
+      close_with_caps(found_, tolerance_);
+      const std::vector<std::uint32_t> back = take_back_cracked(mesh, found_, tolerance_);
+      waiting_.insert(waiting_.end(), back.begin(), back.end());
+      std::ranges::sort(waiting_);
     }
-    close_with_caps(found_, tolerance_);
     std::ranges::sort(found_, {}, [](const Found& f) { return f.triangles[0]; });
     Recognition result;
     for (Found& f : found_)
