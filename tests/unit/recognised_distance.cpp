@@ -72,6 +72,7 @@ Extent extent(const QuadricShape& shape) {
 
 double radius_at(QuadricType type, double z) {
   switch (type) {
+    case sphere: return std::sqrt(std::max(1 - z * z, 0.));
     case cylinder: return 1;
     case cone: return std::abs(z);
     case paraboloid: return std::sqrt(std::max(z, 0.));
@@ -113,12 +114,15 @@ double to_quadric(const RecognisedQuadric& quadric, const glm::dvec3& p) {
   const Extent e = extent(quadric.shape);
   const glm::dvec3 q = inverse(quadric.to_world).point(p);
   const auto far = [&](const glm::dvec3& on) { return glm::length(quadric.to_world.vector(on - q)); };
-  if (type == sphere) return far(glm::normalize(q));
+  if (type == sphere && e.low <= -1 && e.high >= 1) return far(glm::normalize(q));
   double least = infinity;
-  if (type == cylinder || type == hyperboloid1 || type == cone || type == paraboloid || type == hyperboloid2)
+  if (type == sphere || type == cylinder || type == hyperboloid1 || type == cone || type == paraboloid ||
+      type == hyperboloid2)
     least = far(across(type, e, q));
-  if (type != cylinder && type != hyperboloid1 && !(type == cone && e.low > 0))
+  if (type != sphere && type != cylinder && type != hyperboloid1 && !(type == cone && e.low > 0))
     least = std::fmin(least, far(along(type, e, q)));
+  if (const glm::dvec3 on = glm::normalize(q); type == sphere && on.z >= e.low && on.z <= e.high)
+    least = std::fmin(least, far(on));
   if (quadric.shape.capped)
     for (const double end : {e.low, e.high}) least = std::fmin(least, far(on_cap(type, end, q)));
   return least;

@@ -12,14 +12,15 @@
 
 namespace rayengine::surfaces {
 
-/// A clipped quadric that may stand for a region: a unit primitive, whole (sphere), between two heights (cylinder,
-/// cone, paraboloid, hyperboloids), with its own rim (disk), or over a rectangle about its origin (plane, saddle).
+/// A clipped quadric that may stand for a region: a unit primitive, whole (sphere), between two heights (sphere,
+/// cylinder, cone, paraboloid, hyperboloids), with its own rim (disk), or over a rectangle about its origin (plane,
+/// saddle).
 struct Candidate {
   QuadricType type = QuadricType::sphere;
   bool inward = false;  ///< the mesh has its front where the unit primitive has its inside
   bool capped = false;
   Affine to_world;                       ///< its axes stay at right angles, and right-handed
-  std::array<double, 2> clip{};          ///< heights in object space, where the type has them
+  std::array<double, 2> clip{-1, 1};     ///< heights in object space, where the type has them
   double half_angle = std::numbers::pi;  ///< of a cylinder: how far it reaches round its axis from x, either way
   glm::dvec2 half{1};                    ///< half the rectangle's sides in object space, where the type has one
 };
@@ -37,6 +38,9 @@ inline bool is_invertible(const Affine& map) {
   return glm::all(within) && glm::all(below) && std::isfinite(map.origin.x + map.origin.y + map.origin.z);
 }
 
+inline bool is_whole_sphere(const Candidate& c) {
+  return c.type == QuadricType::sphere && c.clip[0] <= -1 && c.clip[1] >= 1;
+}
 inline bool is_whole_turn(const Candidate& c) { return c.half_angle >= std::numbers::pi; }
 
 /// Some triangles of a mesh.

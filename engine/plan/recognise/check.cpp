@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "engine/plan/recognise/nearest.h"
 #include "engine/plan/recognise/outline.h"
 #include "engine/plan/recognise/profile.h"
 
@@ -19,13 +20,6 @@ constexpr double sign_noise = 1e-12;
 using Triangle = std::array<glm::dvec3, 3>;
 
 glm::dvec3 normal(const Triangle& t) { return glm::cross(t[1] - t[0], t[2] - t[0]); }
-
-/// The point of an edge that is nearest to the origin.
-glm::dvec3 nearest_to_origin(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 along = b - a;
-  const double size = glm::dot(along, along);
-  return size > 0 ? a + std::clamp(-glm::dot(a, along) / size, 0., 1.) * along : a;
-}
 
 template <class Function>
 double smallest(const Triangle& t, Function f) {
@@ -86,7 +80,8 @@ class Check {
   }
 
   bool on_surface(double corners) const {
-    const double bend = std::min(1., 1 - std::cos(candidate_.half_angle));
+    const double turn = 1 - std::cos(candidate_.half_angle), rise = candidate_.clip[1] - candidate_.clip[0];
+    const double bend = std::min(1., fibres_ == Fibres::central ? rise : turn);
     return along_fibres(corners) <= vertex_share * tolerance_ && corners <= vertex_noise * bend;
   }
 
@@ -165,6 +160,9 @@ class Check {
                  largest(t, [&](const glm::dvec3& p) { return std::abs(p.z - height.up(p) + height.down(p)); }));
   }
 
+  /// Where the outline is compared: for spheres, at the distance 1.
+  glm::dvec3 on_fibre(const glm::dvec3& p) const { return fibres_ == Fibres::central ? p / glm::length(p) : p; }
+
   /// Whether the fibre through the middle of the best triangle inside the outline meets no other.
   bool covered_once(const Outline& outline) const {
     const Triangle* best = nullptr;
@@ -172,7 +170,7 @@ class Check {
     for (const Triangle& t : triangles_) {
       const glm::dvec3 m = (t[0] + t[1] + t[2]) / 3.;
       const double seen = glm::dot(normal(t), along(m));
-      if (seen > most && outline.contains(m)) best = &t, most = seen;
+      if (seen > most && outline.contains(on_fibre(m))) best = &t, most = seen;
     }
     if (!best) return false;
     const glm::dvec3 m = ((*best)[0] + (*best)[1] + (*best)[2]) / 3., line = along(m);

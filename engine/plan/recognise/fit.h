@@ -11,6 +11,9 @@ namespace rayengine::surfaces {
 /// The sphere through a region's corners, by linear least squares.
 std::optional<Candidate> fit_sphere(const Region& region);
 
+/// The part of a sphere between two parallel planes, or beyond one, that a region may be.
+std::optional<Candidate> fit_zone(const Region& region);
+
 /// The disk and the rectangle that a flat region's outline may be.
 std::vector<Candidate> fit_plates(const Region& region);
 

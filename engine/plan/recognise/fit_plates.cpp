@@ -11,12 +11,20 @@ namespace rayengine::surfaces {
 namespace {
 
 /// The mean normal, by area.
-glm::dvec3 mean_normal(const Region& region, double extent) {
+glm::dvec3 mean_normal(const Patch& patch, double extent) {
   glm::dvec3 sum(0);
-  each_normal(region, [&](const glm::dvec3& n) { sum += n / extent / extent; });
+  each_normal(patch, [&](const glm::dvec3& n) { sum += n / extent / extent; });
   for (int i = 0; i < 3; ++i)
     if (std::abs(sum[i]) <= 1e-9 * glm::length(sum)) sum[i] = 0;
   return sum / glm::length(sum);
+}
+
+/// Whether its corners are about as high as its middle: what is not is no plate, and its outline need not be looked at.
+bool is_flat(const Patch& patch, const Cloud& cloud, const glm::dvec3& normal) {
+  constexpr double most = 0.01;
+  bool flat = true;
+  each_corner(patch, [&](const glm::dvec3& p) { flat = flat && std::abs(glm::dot(cloud.local(p), normal)) < most; });
+  return flat;
 }
 
 std::optional<Candidate> disk(const Region& region, const Cloud& cloud, const glm::dmat3& turn) {
@@ -69,10 +77,12 @@ std::optional<Candidate> rectangle(const Region& region, const Cloud& cloud, con
 }  // namespace
 
 std::vector<Candidate> fit_plates(const Region& region) {
-  const Cloud cloud(region);
+  const std::vector<std::uint32_t> few = thinned(region);
+  const Patch patch{region.mesh, few};
+  const Cloud cloud(patch);
   if (!cloud.usable()) return {};
-  const glm::dvec3 normal = mean_normal(region, cloud.extent);
-  if (!(glm::length(normal) > 0)) return {};
+  const glm::dvec3 normal = mean_normal(patch, cloud.extent);
+  if (!(glm::length(normal) > 0) || !is_flat(patch, cloud, normal)) return {};
   std::vector<Candidate> result;
   if (const auto c = disk(region, cloud, frame(normal))) result.push_back(*c);
   if (const auto c = rectangle(region, cloud, normal)) result.push_back(*c);

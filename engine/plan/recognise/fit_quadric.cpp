@@ -30,9 +30,9 @@ struct Form {
   }
 };
 
-std::optional<Form> least_squares(const Region& region, const Cloud& cloud) {
+std::optional<Form> least_squares(const Patch& patch, const Cloud& cloud) {
   Matrix<10> m{};
-  each_corner(region, [&](const glm::dvec3& at) { add_outer<10>(m, monomials(cloud.local(at))); });
+  each_corner(patch, [&](const glm::dvec3& at) { add_outer<10>(m, monomials(cloud.local(at))); });
   const Eigen<10> fit = eigen(m);
   if (!(fit.values[0] < zero * fit.values[1])) return {};  // more than one quadric would do
   const Vector<10>& q = fit.vectors[0];
@@ -183,9 +183,11 @@ class Classifier {
 }  // namespace
 
 std::optional<Candidate> fit_quadric(const Region& region) {
-  const Cloud cloud(region);
+  const std::vector<std::uint32_t> few = thinned(region);
+  const Patch patch{region.mesh, few};
+  const Cloud cloud(patch);
   if (!cloud.usable()) return {};
-  const std::optional<Form> form = least_squares(region, cloud);
+  const std::optional<Form> form = least_squares(patch, cloud);
   if (!form) return {};
   std::optional<Candidate> found = Classifier(region, cloud, *form).run();
   if (!found || found->type == QuadricType::sphere || !faces_inward(region, *found)) return found;

@@ -10,13 +10,15 @@ namespace rayengine::surfaces {
 // |p|^2 = 2 c.p + k is linear in the centre c and in k = r^2 - |c|^2; about the mean of the points k separates. Source:
 // Coope, "Circle fitting by linear and nonlinear least squares" (1993), in three dimensions.
 std::optional<Candidate> fit_sphere(const Region& region) {
-  const Cloud points(region);
+  const std::vector<std::uint32_t> few = thinned(region);
+  const Patch patch{region.mesh, few};
+  const Cloud points(patch);
   if (!points.usable()) return {};
-  const double count = 3. * static_cast<double>(region.triangles.size());
+  const double count = 3. * static_cast<double>(few.size());
   Matrix<3> m{};
   Vector<3> b{};
   double squares = 0;
-  each_corner(region, [&](const glm::dvec3& at) {
+  each_corner(patch, [&](const glm::dvec3& at) {
     const glm::dvec3 p = points.local(at);
     const double size = glm::dot(p, p);
     squares += size;
@@ -28,7 +30,7 @@ std::optional<Candidate> fit_sphere(const Region& region) {
   const glm::dvec3 center((*c)[0], (*c)[1], (*c)[2]);
   const double radius = std::sqrt(squares / count + glm::dot(center, center));
   double noise = std::numeric_limits<double>::epsilon();
-  each_corner(region, [&](const glm::dvec3& at) {
+  each_corner(patch, [&](const glm::dvec3& at) {
     noise = std::max(noise, std::abs(glm::length(points.local(at) - center) - radius));
   });
   Candidate found;

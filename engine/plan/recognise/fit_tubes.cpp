@@ -99,9 +99,11 @@ Candidate sector(const Region& region, Candidate c) {
 }  // namespace
 
 std::vector<Candidate> fit_tubes(const Region& region) {
-  const Cloud cloud(region);
+  const std::vector<std::uint32_t> few = thinned(region);
+  const Patch patch{region.mesh, few};
+  const Cloud cloud(patch);
   if (!cloud.usable()) return {};
-  std::vector<FittedTube> tubes = fit_cylinder_and_cones(region, cloud);
+  std::vector<FittedTube> tubes = fit_cylinder_and_cones(patch, cloud);
   // A cylinder is the simpler thing: it stands unless a cone is much nearer.
   std::ranges::stable_sort(tubes, {}, [](const FittedTube& t) { return t.tube.slope == 0 ? 0.1 * t.noise : t.noise; });
   std::vector<Candidate> result;

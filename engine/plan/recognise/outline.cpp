@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/plan/recognise/nearest.h"
 #include "engine/plan/recognise/profile.h"
 
 namespace rayengine::surfaces {
@@ -14,7 +15,7 @@ class Comparison {
 
   std::optional<Outline> run() {
     switch (candidate_.type) {
-      case QuadricType::sphere: return whole();
+      case QuadricType::sphere: return is_whole_sphere(candidate_) ? whole() : zone();
       case QuadricType::plane:
       case QuadricType::saddle: return rectangle();
       default: break;
@@ -41,6 +42,56 @@ class Comparison {
 
   std::optional<Outline> whole() const {
     return each_edge([](auto&&...) { return false; }) ? std::optional(Outline{}) : std::nullopt;
+  }
+
+  /// Sines of elevation, of a triangle or edge seen from the centre.
+  struct Elevation {
+    double low, high;
+
+    Elevation(double lowest, double highest, double nearest, double farthest)
+        : low(lowest / (lowest > 0 ? farthest : nearest)), high(highest / (highest > 0 ? nearest : farthest)) {}
+  };
+
+  Elevation elevation(const glm::dvec3& a, const glm::dvec3& b) const {
+    return {std::min(a.z, b.z), std::max(a.z, b.z), glm::length(nearest_to_origin(a, b)),
+            std::max(glm::length(a), glm::length(b))};
+  }
+
+  /// Of a triangle; from the centre, no point of it is nearer than its plane.
+  Elevation elevation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) const {
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    return {std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}), std::abs(glm::dot(n, a)) / glm::length(n),
+            std::max({glm::length(a), glm::length(b), glm::length(c)})};
+  }
+
+  /// Of a sphere, seen from its centre; an end at a pole is none.
+  std::optional<Outline> zone() const {
+    const double low = candidate_.clip[0], high = candidate_.clip[1], middle = 0.5 * (low + high);
+    double off = 0;
+    Outline outline;
+    each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
+      const Elevation seen = elevation(a, b);
+      const double end = low > -1 && (high >= 1 || a.z < middle) ? low : high;
+      outline.vertices = std::max(outline.vertices, std::abs(a.z - end) / std::min(1., high - low));
+      off = std::max({off, std::abs(seen.low - end), std::abs(seen.high - end)});
+      return true;
+    });
+    for (const std::uint32_t t : region_.triangles) {
+      const Elevation seen = elevation(map_.point(region_.corner(t, 0)), map_.point(region_.corner(t, 1)),
+                                       map_.point(region_.corner(t, 2)));
+      if (low > -1) off = std::max(off, low - seen.low);
+      if (high < 1) off = std::max(off, seen.high - high);
+    }
+    const auto arc = [&](double end) {  // the longest that such a difference in height is
+      const double at = std::asin(end);
+      return std::max(std::asin(std::min(end + off, 1.)) - at, at - std::asin(std::max(end - off, -1.)));
+    };
+    if (!(off < 1)) return {};
+    outline.distance =
+        std::max(low > -1 ? arc(low) : 0, high < 1 ? arc(high) : 0) * std::max({lengths_.x, lengths_.y, lengths_.z});
+    if (low > -1) outline.lower.z = low + off;
+    if (high < 1) outline.upper.z = high - off;
+    return outline;
   }
 
   std::optional<Outline> ends() const {
@@ -100,10 +151,8 @@ class Comparison {
     double off = 0;
     Outline outline;
     each_edge([&](const glm::dvec3& a, const glm::dvec3& b) {
-      const glm::dvec2 from(a), along = glm::dvec2(b) - from;
-      const double size = glm::dot(along, along);
-      const double at = size > 0 ? std::clamp(-glm::dot(from, along) / size, 0., 1.) : 0;
-      off = std::max(off, rim - glm::length(from + at * along));
+      const glm::dvec3 from(a.x, a.y, 0), to(b.x, b.y, 0);
+      off = std::max(off, rim - glm::length(nearest_to_origin(from, to)));
       outline.vertices = std::max(outline.vertices, std::abs(glm::length(from) - rim));
       return true;
     });

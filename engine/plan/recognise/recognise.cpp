@@ -161,6 +161,7 @@ class Recogniser {
   std::optional<Verdict> judge_patch(const Region& region) const {
     std::vector<Candidate> candidates = fit_plates(region);
     for (const Candidate& c : fit_tubes(region)) candidates.push_back(c);
+    if (const auto c = fit_zone(region)) candidates.push_back(*c);
     // Whole spheres and ellipsoids had their turn, and some of them were withdrawn.
     if (const auto c = fit_quadric(region); c && c->type != QuadricType::sphere) candidates.push_back(*c);
     for (const Candidate& c : candidates)

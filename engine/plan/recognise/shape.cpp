@@ -37,7 +37,7 @@ QuadricShape shape_of(const Candidate& candidate) {
   const bool unit_saddle = candidate.type == QuadricType::saddle && candidate.half == glm::dvec2(1);
   if (rectangle && !unit_saddle)
     shape.box = box_over_rectangle(candidate);
-  else if (!rectangle && candidate.type != QuadricType::sphere && candidate.type != QuadricType::disk)
+  else if (!rectangle && !is_whole_sphere(candidate) && candidate.type != QuadricType::disk)
     shape.clip = candidate.clip;
   const bool sector = !is_whole_turn(candidate);
   if (!candidate.inward && !sector) return shape;
