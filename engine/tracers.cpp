@@ -99,7 +99,9 @@ struct Entry {
 constexpr Entry automatic{{"auto", "the best for this machine"}, make_auto, auto_precisions};
 
 constexpr std::array registry{
-    Entry{{"embree", "CPU: Embree's traversal, native triangles, exact quadrics"}, make_embree, embree_precisions},
+    Entry{{"embree", "CPU: Embree's traversal and triangles, which let a ray through at some vertices; exact quadrics"},
+          make_embree,
+          embree_precisions},
     Entry{{"bvh", "CPU: own traversal and watertight triangles, all in double"}, make_bvh, bvh_precisions},
     Entry{{"stream", "GPU: the ray engine, BVH walked by the CPU and tests by intersection shaders"},
           make_stream,

@@ -55,6 +55,26 @@ Json row_json(const StressRow& row) {
 
 std::string two(double max, double p999) { return fmt::format("{:.1e}/{:.1e}", max, p999); }
 
+/// What the table says of a row, beyond which case it is.
+std::string line(const StressRow& row) {
+  const Comparison& e = row.errors;
+  std::string text = fmt::format("{:<10} {:<9} ", row.tracer, to_string(row.precision));
+  if (row.aborted)
+    text += "aborts the process";
+  else
+    text += fmt::format("{:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>6} {:>4} {:<15} {:<15} {}", e.rays, e.false_hits,
+                        e.false_misses, e.wrong_ids, e.ambiguous, e.beyond_bounds, e.bound_violations, e.nans,
+                        two(e.max_t_error, e.p999_t_error), two(e.max_point_error, e.p999_point_error),
+                        two(e.max_normal_error, e.p999_normal_error));
+  return text + (row.broken.empty() ? "\n" : "  LIMIT BROKEN\n");
+}
+
+/// All families of a tracer at a precision together.
+std::vector<StressRow> in_all(std::vector<StressRow> families) {
+  for (StressRow& row : families) row.number = 0;
+  return by_family(families);
+}
+
 }  // namespace
 
 std::vector<StressRow> by_family(const std::vector<StressRow>& rows) {
@@ -79,18 +99,8 @@ std::string stress_table(const std::vector<StressRow>& families) {
       fmt::format("{:<23} {:<10} {:<9} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>6} {:>4} {:<15} {:<15} {}\n", "case",
                   "tracer", "precision", "rays", "hits+", "misses+", "ids", "ambig.", "beyond", "bounds", "NaN",
                   "t max/p99.9", "point", "normal");
-  for (const StressRow& r : families) {
-    const Comparison& e = r.errors;
-    text += fmt::format("{:>2} {:<20} {:<10} {:<9} ", r.number, r.family, r.tracer, to_string(r.precision));
-    if (r.aborted)
-      text += "aborts the process";
-    else
-      text += fmt::format("{:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>6} {:>4} {:<15} {:<15} {}", e.rays, e.false_hits,
-                          e.false_misses, e.wrong_ids, e.ambiguous, e.beyond_bounds, e.bound_violations, e.nans,
-                          two(e.max_t_error, e.p999_t_error), two(e.max_point_error, e.p999_point_error),
-                          two(e.max_normal_error, e.p999_normal_error));
-    text += r.broken.empty() ? "\n" : "  LIMIT BROKEN\n";
-  }
+  for (const StressRow& row : families) text += fmt::format("{:>2} {:<20} ", row.number, row.family) + line(row);
+  for (const StressRow& row : in_all(families)) text += fmt::format("{:<23} ", "all of them") + line(row);
   return text;
 }
 

@@ -12,6 +12,7 @@ namespace rayengine::cli {
 /// All cases of a family together: counts added up, errors the largest.
 std::vector<StressRow> by_family(const std::vector<StressRow>& rows);
 
+/// A line a family, and one for all families of each tracer and precision.
 std::string stress_table(const std::vector<StressRow>& families);
 Json stress_json(const StressReport& report);
 

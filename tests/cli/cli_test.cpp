@@ -380,6 +380,7 @@ TEST_F(Cli, StressTellsEveryCaseAsTableJsonAndPage) {
   }
   EXPECT_EQ(cases.size(), 34u);
   EXPECT_TRUE(precisions.contains("fast") && precisions.contains("robust"));
+  EXPECT_NE(outcome.out.find("\nall of them"), std::string::npos);
   const std::string page = test::content(file("s.html"));
   for (const std::string& name : cases) {
     EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
