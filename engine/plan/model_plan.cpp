@@ -20,14 +20,15 @@ struct Option {
 class Options {
  public:
   Options(const ObjectStatistics& object, double allowed, const SceneStatistics& scene,
-          const DeviceMeasurements& device, bool prepare)
-      : object_(object), allowed_(allowed), scene_(scene), device_(device), prepare_(prepare) {}
+          const DeviceMeasurements& device, const Effort& effort)
+      : object_(object), allowed_(allowed), scene_(scene), device_(device), effort_(effort) {}
 
   Option kept() const { return {Representation::kept, seconds(object_.triangles)}; }
 
   Option best() const {
     Option best = kept();
     if (object_.triangles < smallest_mesh || !(allowed_ > 0)) return best;
+    if (effort_.recognise) return {Representation::recognised_parts, seconds(object_.triangles) + looking()};
     const double enough = worthwhile * best.seconds;
     for (const Option& option : {pieces(), parts(), coarser(), prepared()})
       if (option.seconds < std::min(enough, best.seconds)) best = option;
@@ -47,13 +48,11 @@ class Options {
     return std::min(scene_.rays, across * across);
   }
 
-  /// Where the finding pays only once it is for many times, that is left out.
-  double finding(double per_triangle) const { return prepare_ ? 0 : object_.triangles * per_triangle; }
-
   Option quadrics(Representation how, double share, double per_triangle) const {
     if (share < least_share) return {how, infinity};
-    return {how, finding(per_triangle) + seconds(object_.triangles * (1 - share))};
+    return {how, object_.triangles * per_triangle + seconds(object_.triangles * (1 - share))};
   }
+  double looking() const { return object_.triangles * device_.recognise_parts; }
   Option pieces() const { return quadrics(Representation::recognised, object_.ball_share, device_.recognise_whole); }
   Option parts() const {
     return quadrics(Representation::recognised_parts, parts_share * object_.quadric_share, device_.recognise_parts);
@@ -63,7 +62,10 @@ class Options {
     const double area = object_.triangles * object_.spacing * object_.spacing / 2;
     return std::min<double>(object_.triangles, left_per_area * area / (allowed_ * allowed_));
   }
-  Option coarser() const { return {Representation::simplified, finding(device_.simplify) + seconds(triangles_left())}; }
+  Option coarser() const {
+    return {Representation::simplified,
+            (effort_.simplify ? 0 : object_.triangles * device_.simplify) + seconds(triangles_left())};
+  }
   Option prepared() const {
     return {Representation::prepared, object_.triangles * recall_seconds + seconds(triangles_left())};
   }
@@ -72,7 +74,7 @@ class Options {
   double allowed_;
   const SceneStatistics& scene_;
   const DeviceMeasurements& device_;
-  bool prepare_;
+  const Effort& effort_;
 };
 
 /// What was chosen for all objects of one kind of representation.
@@ -93,7 +95,7 @@ std::string count_of(double n, const char* what) {
   return std::to_string(static_cast<std::uint64_t>(n)) + " " + what + (n == 1 ? "" : "s");
 }
 
-Choice to_choice(std::size_t representation, const Tally& tally, const Tolerance& tolerance) {
+Choice to_choice(std::size_t representation, const Tally& tally, const Tolerance& tolerance, const Effort& effort) {
   const bool kept = representation == 0;
   Choice c;
   c.subject = count_of(static_cast<double>(tally.objects), "object") +
@@ -104,7 +106,10 @@ Choice to_choice(std::size_t representation, const Tally& tally, const Tolerance
   c.instead = kept ? "" : representation_names[0];
   c.instead_seconds = kept ? -1 : tally.instead_seconds;
   c.instead_error = kept ? -1 : 0;
-  c.why = tolerance.value == 0 ? "a tolerance of 0 means exact" : representation_reasons[representation];
+  const bool asked = effort.recognise && representation == static_cast<std::size_t>(Representation::recognised_parts);
+  c.why = asked                  ? "it was asked for, whatever it costs"
+          : tolerance.value == 0 ? "a tolerance of 0 means exact"
+                                 : representation_reasons[representation];
   return c;
 }
 
@@ -128,13 +133,13 @@ double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * s
 }  // namespace
 
 ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
-                     bool prepare) {
+                     const Effort& effort) {
   check(tolerance);
   ModelPlan plan;
   std::array<Tally, representation_names.size()> tallies;
   for (const ObjectStatistics& o : scene.objects) {
     const double allowed = rounded(model_share * allowance(tolerance, o, scene.pixel));
-    const Options options(o, allowed, scene, device, prepare);
+    const Options options(o, allowed, scene, device, effort);
     const Option best = options.best();
     plan.objects.push_back(best.representation);
     plan.allowances.push_back(allowed);
@@ -146,7 +151,7 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
   }
   plan.find_repeats = may_repeat(scene);
   for (std::size_t r = 0; r < tallies.size(); ++r)
-    if (tallies[r].objects > 0) plan.choices.push_back(to_choice(r, tallies[r], tolerance));
+    if (tallies[r].objects > 0) plan.choices.push_back(to_choice(r, tallies[r], tolerance, effort));
   return plan;
 }
 

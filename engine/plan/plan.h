@@ -47,9 +47,14 @@ struct TracingPlan {
   std::vector<Choice> choices;
 };
 
-/// `prepare`: whether this is done once for many times, so that finding the model may cost what it will.
+/// What finding a model may cost beyond what one picture repays.
+struct Effort {
+  bool simplify = false;   ///< make coarser meshes that are kept for the next time
+  bool recognise = false;  ///< look at every mesh for quadrics
+};
+
 ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
-                     bool prepare = false);
+                     const Effort& effort = {});
 
 /// `gpu`: whether the machine has one that is more than software; the hybrid then measures, and decides, as it goes.
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,

@@ -8,7 +8,7 @@ Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   const Stopwatch watch;
   const DeviceMeasurements& device = options.device ? *options.device : usual_device();
   const SceneStatistics given = gather_statistics(scene, options.rays, options.coherent);
-  const ModelPlan model = plan_model(given, device, options.tolerance, options.prepare);
+  const ModelPlan model = plan_model(given, device, options.tolerance, options.effort);
   Planned result{make_model(scene, model, options.simplifier), {}, model.choices, 0};
   const SceneStatistics made =
       result.model.replaced.empty() ? given : gather_statistics(result.model.scene, options.rays, options.coherent);

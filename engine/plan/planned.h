@@ -9,8 +9,8 @@ struct PlanOptions {
   Tolerance tolerance;
   double rays = 0;       ///< that will be asked for, about: see expected_rays()
   bool coherent = true;  ///< whether most of them are the eye's or go to lights
-  bool prepare = false;  ///< find the best model whatever the finding costs; coarser meshes are kept for the next time
-  bool gpu = false;      ///< whether there is one that is more than software
+  Effort effort;
+  bool gpu = false;  ///< whether there is one that is more than software
   Simplifier simplifier;
   const DeviceMeasurements* device = nullptr;  ///< null: usual_device()
 };

@@ -8,8 +8,10 @@
 
 #include "engine/load/atomic_file.h"
 #include "engine/measure/contestant.h"
+#include "engine/measure/plan_bench.h"
 #include "examples/cli/cli.h"
 #include "examples/cli/errors.h"
+#include "examples/cli/planning.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
 #include "examples/cli/simulate.h"
@@ -25,6 +27,7 @@ struct Options {
   std::string tracers = "embree,embree-bare,embree-sphere,embree-tess";
   std::string precisions = "fast,robust";
   std::optional<glm::ivec2> size;
+  PlanningOptions planning;
 };
 
 BenchOptions to_bench(const Options& o) {
@@ -75,6 +78,45 @@ void print(const std::filesystem::path& scene, const std::vector<BenchRow>& rows
   std::cout << std::endl;
 }
 
+PlanBench measure_plan(const Options& o, const std::filesystem::path& file) {
+  Scene scene = load(file, o.common).scene;
+  if (o.size) scene.camera.size = *o.size;
+  Progress progress("bench " + file.filename().string(), !o.common.quiet());
+  const PlanSource source(o.planning, o.common);
+  return bench_plan(scene, source.for_rays(expected_rays(scene, 1), true), o.common.threads,
+                    [&](double share) { progress.update(share); });
+}
+
+Json to_json(const PictureCost& c) {
+  return {{"planning_s", c.planning}, {"build_s", c.build}, {"render_s", c.render}, {"bytes", c.bytes}};
+}
+
+void print(const std::filesystem::path& scene, const PlanBench& bench) {
+  const PictureCost &without = bench.without, &with = bench.with;
+  std::cout << fmt::format("{:<28} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {:.3g} times as fast, {:.3g} of the memory\n",
+                           scene.filename().string(), seconds_text(without.build), seconds_text(without.render),
+                           seconds_text(with.planning), seconds_text(with.build), seconds_text(with.render),
+                           bench.replaced, without.seconds() / with.seconds(),
+                           static_cast<double>(with.bytes) / static_cast<double>(without.bytes));
+}
+
+/// Whole pictures, as they are rendered without a plan and with one.
+Json bench_plans(const Options& o) {
+  std::cout << fmt::format("{:<28} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "without a plan, and with one", "build",
+                           "render", "planning", "build", "render", "replaced");
+  Json rows = Json::array();
+  for (const std::filesystem::path& scene : o.scenes) {
+    const PlanBench measured = measure_plan(o, scene);
+    print(scene, measured);
+    rows.push_back({{"scene", scene.string()},
+                    {"tolerance", *o.planning.tolerance},
+                    {"without", to_json(measured.without)},
+                    {"with", to_json(measured.with)},
+                    {"objects_replaced", measured.replaced}});
+  }
+  return rows;
+}
+
 /// What cannot be asked for together.
 void check(const Options& o) {
   if (o.simulate && !o.scenes.empty())
@@ -88,6 +130,12 @@ void check(const Options& o) {
 int run(const Options& o) {
   check(o);
   if (o.simulate) return simulate(o.json, o.csv);
+  if (o.planning.tolerance) {
+    const ThreadLimit limit(o.common.threads);
+    const Json rows = bench_plans(o);
+    if (!o.json.empty()) write_json(o.json, {{"device", device(thread_count(o.common.threads))}, {"plans", rows}});
+    return 0;
+  }
   to_bench(o);  // wrong names are told before anything is loaded
   const ThreadLimit limit(o.common.threads);
   Json rows = Json::array();
@@ -108,6 +156,7 @@ void add_bench(CLI::App& app, Action& action) {
       app, "bench", "Measure rays per second, and check the answers that were timed",
       "  rayengine bench scenes/sphereflake.json\n"
       "  rayengine bench bunny.ply koala.obj --tracers embree,embree-bare --json bench.json\n"
+      "  rayengine bench bunny.ply --tolerance 0.5\n"
       "  rayengine bench --simulate --csv scheduler.csv\n\n"
       "Tracers take turns; figures are medians and quartile ranges of 9 runs after a warm-up, and errors are those of\n"
       "the answers to 2,048 of the same rays against 'reference'. Rays are the camera's (primary), from what they hit "
@@ -120,6 +169,7 @@ void add_bench(CLI::App& app, Action& action) {
   sub->add_option("--tracers", options->tracers, "Tracers and yardsticks, with commas between")->type_name("A,B,...");
   sub->add_option("--precisions", options->precisions, "Precisions to measure each at")->type_name("P,Q,...");
   add_size(sub, options->size, "1024x1024");
+  add_tolerance(sub, options->planning);
   sub->add_option("--json", options->json, "The same as JSON")->type_name("FILE");
   sub->add_flag("--simulate", options->simulate,
                 "Run the scheduler's policy, and others beside it, on made devices instead of scenes");

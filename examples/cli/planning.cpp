@@ -88,7 +88,7 @@ Tolerance tolerance_of(const PlanningOptions& options) { return {*options.tolera
 
 }  // namespace
 
-void add_planning(CLI::App* app, PlanningOptions& options) {
+void add_tolerance(CLI::App* app, PlanningOptions& options) {
   const std::string unit = options.unit == Tolerance::Unit::pixels ? "pixels" : "units of the scene";
   app->add_option_function<double>(
          "--tolerance",
@@ -99,24 +99,39 @@ void add_planning(CLI::App* app, PlanningOptions& options) {
          },
          "Do the least work that keeps within so many " + unit + "; 0 is exact (see 'rayengine plan')")
       ->type_name("X");
+  app->add_flag("--recognise", options.effort.recognise,
+                "Look for quadrics in every mesh, whatever that costs and saves");
+}
+
+void add_planning(CLI::App* app, PlanningOptions& options) {
+  add_tolerance(app, options);
   CLI::Option* verify =
       add_count(app, "--verify", options.verify, {1, 1 << 26},
                 "Ask so many of the rays of exact arithmetic too, and fail where the tolerance is not kept");
   if (!options.tolerance) verify->needs("--tolerance");
 }
 
+PlanSource::PlanSource(const PlanningOptions& options, const Common& common)
+    : options_{.tolerance = tolerance_of(options),
+               .effort = options.effort,
+               .gpu = may_have_gpu(),
+               .simplifier = cached_simplifier()},
+      device_(known_device(common)) {}
+
+PlanOptions PlanSource::for_rays(double rays, bool coherent) const {
+  PlanOptions options = options_;
+  options.rays = rays;
+  options.coherent = coherent;
+  options.device = &device_;
+  return options;
+}
+
 PlannedScene::PlannedScene(const PlanningOptions& options, Scene scene, double rays, bool coherent,
                            const Common& common)
     : options_(options), common_(common), given_(std::move(scene)) {
   if (!options.tolerance) return;
-  const DeviceMeasurements device = known_device(common);
-  plan_ = plan_scene(given_, {.tolerance = tolerance_of(options),
-                              .rays = rays,
-                              .coherent = coherent,
-                              .prepare = options.prepare,
-                              .gpu = may_have_gpu(),
-                              .simplifier = cached_simplifier(),
-                              .device = &device});
+  const PlanSource source(options, common);
+  plan_ = plan_scene(given_, source.for_rays(rays, coherent));
   if (options.verify == 0) given_ = {};
 }
 

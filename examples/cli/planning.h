@@ -12,21 +12,34 @@
 // What the commands that take a tolerance share.
 namespace rayengine::cli {
 
-/// `--tolerance`, `--verify`.
+/// What is asked of a plan.
 struct PlanningOptions {
   Tolerance::Unit unit = Tolerance::Unit::pixels;
   std::optional<double> tolerance;
-  int verify = 0;        ///< rays of the sample; 0: not
-  bool prepare = false;  ///< whether to find the best model whatever it costs
+  int verify = 0;  ///< rays of the sample; 0: not
+  Effort effort;
 };
 
+/// `--tolerance`, `--recognise`.
+void add_tolerance(CLI::App* app, PlanningOptions& options);
+/// These, and `--verify`.
 void add_planning(CLI::App* app, PlanningOptions& options);
+
+/// What a plan is made with here: the loader's simplifier, and the machine as `rayengine plan --measure` found it.
+class PlanSource {
+ public:
+  PlanSource(const PlanningOptions& options, const Common& common);
+  PlanOptions for_rays(double rays, bool coherent) const;
+
+ private:
+  PlanOptions options_;
+  DeviceMeasurements device_;
+};
 
 /// A scene, ready to be traced: as it is, or as a plan made it.
 class PlannedScene {
  public:
-  /// Plans where a tolerance was given, with the loader's simplifier and what `rayengine plan --measure` found of this
-  /// machine, if it did. What the plan does not need of the scene is let go.
+  /// Plans where a tolerance was given. What the plan does not need of the scene is let go.
   PlannedScene(const PlanningOptions& options, Scene scene, double rays, bool coherent, const Common& common);
 
   const Scene& scene() const { return plan_ ? plan_->model.scene : given_; }

@@ -424,6 +424,14 @@ TEST_F(Cli, PlanExplainsItself) {
   for (const json& choice : plan["choices"]) EXPECT_FALSE(choice["why"].get<std::string>().empty());
 }
 
+TEST_F(CliBench, ComparesPicturesWithAndWithoutAPlan) {
+  ASSERT_EQ(run("bench scene.nff --tolerance 0.5 --json b.json").code, 0);
+  const json row = parse("b.json")["plans"][0];
+  EXPECT_EQ(row["tolerance"], 0.5);
+  EXPECT_EQ(row["without"]["planning_s"], 0);
+  for (const char* part : {"planning_s", "build_s", "render_s", "bytes"}) EXPECT_GT(row["with"][part], 0) << part;
+}
+
 TEST_F(CliRender, ToATolerance) {
   EXPECT_EQ(run("render scene.nff -o a.exr --aov object -q").code, 0);
   const test::Outcome planned =

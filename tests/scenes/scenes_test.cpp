@@ -163,7 +163,7 @@ TEST_P(Scenes, KeepToATolerance) {
     const Tolerance tolerance{pixels};
     const Planned planned = plan_scene(
         scene,
-        {.tolerance = tolerance, .rays = expected_rays(scene, 1), .prepare = true, .simplifier = cached_simplifier()});
+        {.tolerance = tolerance, .rays = expected_rays(scene, 1), .effort = {true, true}, .simplifier = cached_simplifier()});
     const Scene& model = planned.model.scene;
     const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
     const Verification found = verify(scene, model, *tracer, tolerance, rays);
