@@ -23,9 +23,10 @@ constexpr double widest = 4;                // cells of level 0, in limits; each
 constexpr std::uint8_t finest = 3;          // cells of half a limit
 constexpr std::uint8_t alone = finest + 1;  // vertices that are their own cluster
 constexpr int most_rounds = 12;
-constexpr int most_tried = 32;       // coarse triangles for each part of an original one
-constexpr double near_enough = 0.3;  // of a limit: no nearer coarse triangle is looked for
-constexpr int most_nodes = 32;       // along an edge of a coarse one
+constexpr int most_tried = 32;        // coarse triangles for each part of an original one
+constexpr double near_enough = 0.3;   // of a limit: no nearer coarse triangle is looked for
+constexpr double least_cosine = 0.1;  // of the normals before and after: no triangle may fold over or stand on edge
+constexpr int most_nodes = 32;        // along an edge of a coarse one
 
 constexpr std::size_t sample = 1024;      // triangles that are looked at first
 constexpr double hopeless_share = 0.5;    // of them that fail
@@ -270,7 +271,9 @@ class Clustering {
     if (is_within(c, corners(positions_, triangles_[k.source]), limit_ * limit_)) return true;
     const glm::dvec3 before =
         clusters_.normals[k.corners.x] + clusters_.normals[k.corners.y] + clusters_.normals[k.corners.z];
-    return glm::dot(area_vector(c), before) >= 0 && (is_covered(index, 0.75) || is_covered(index, 0.5));
+    const glm::dvec3 now = area_vector(c);
+    return glm::dot(now, before) > least_cosine * glm::length(now) * glm::length(before) &&
+           (is_covered(index, 0.75) || is_covered(index, 0.5));
   }
 
   bool is_new(const CoarseTriangle& k) const {

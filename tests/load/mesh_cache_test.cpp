@@ -31,8 +31,8 @@ class MeshCache : public testing::Test {
   }
 
   const test::TemporaryFolder cache_;
-  const Mesh sphere_ = subdivided_sphere(4);
-  static constexpr double tolerance = 0.05;
+  const Mesh sphere_ = subdivided_sphere(3);
+  static constexpr double tolerance = 0.1;
 };
 
 void expect_same(const Simplified& a, const Simplified& b) {

@@ -56,7 +56,7 @@ double farthest(Mesh from, Mesh to, std::size_t count) {
 }
 
 /// Expects every promise of simplify, and gives what came out.
-Simplified expect_kept(const Mesh& mesh, double tolerance, std::size_t count = 400) {
+Simplified expect_kept(const Mesh& mesh, double tolerance, std::size_t count = 200) {
   const Simplified result = simplify(mesh, tolerance);
   EXPECT_LE(result.distance, tolerance);
   EXPECT_LE(result.mesh.triangles.size(), mesh.triangles.size());
@@ -121,42 +121,42 @@ TEST(Simplify, LeavesWhatHasNothingToDrop) {
   }
 }
 
-TEST(Simplify, DropsMostOfAFineSphere) {
-  const Mesh sphere = subdivided_sphere(6);  // edges of 0.025 and less
-  EXPECT_LT(expect_kept(sphere, 0.02).mesh.triangles.size(), sphere.triangles.size() / 4);
+TEST(Simplify, DropsTheSmallTrianglesOfASphere) {
+  const Mesh sphere = subdivided_sphere(5);  // edges of 0.05 and less
+  EXPECT_LT(expect_kept(sphere, 0.04).mesh.triangles.size(), sphere.triangles.size() / 2);
 }
 
 TEST(Simplify, ClustersWhatIsTooMuchForTheDecimater) {
-  const Mesh sphere = subdivided_sphere(7);  // 131,072 triangles
-  const Simplified clustered = simplify(sphere, 0.03, 0);
+  const Mesh sphere = subdivided_sphere(6);  // 32,768 triangles
+  const Simplified clustered = simplify(sphere, 0.06, 0);
   EXPECT_LT(clustered.mesh.triangles.size(), sphere.triangles.size() / 10);
   EXPECT_LE(farthest(sphere, clustered.mesh, 100), clustered.distance);
   EXPECT_LE(farthest(clustered.mesh, sphere, 100), clustered.distance);
 }
 
 TEST(Simplify, KeepsTheCornersAndEdgesOfAnOpenSheet) {
-  const Mesh sheet = flat_sheet(60);
-  const Simplified result = expect_kept(sheet, 0.01, 2000);
+  const Mesh sheet = flat_sheet(40);
+  const Simplified result = expect_kept(sheet, 0.015, 1000);
   EXPECT_LT(result.mesh.triangles.size(), 200u);
   for (const glm::dvec3& corner : {glm::dvec3(0, 0, 0), {1, 0, 0}, {0, 1, 0}, {1, 1, 0}})
     EXPECT_LE(distance(corner, result.mesh), result.distance);
 }
 
 TEST(Simplify, FillsNoHolesThatAreWiderThanTheTolerance) {
-  Mesh holed = flat_sheet(60);
+  Mesh holed = flat_sheet(40);
   std::erase_if(holed.triangles, [&](const glm::uvec3& t) {
     return glm::length(holed.positions[t.x] - glm::dvec3(0.5, 0.5, 0)) < 0.15;
   });
-  const Simplified result = expect_kept(holed, 0.02, 2000);
+  const Simplified result = expect_kept(holed, 0.03, 1000);
   EXPECT_LT(result.mesh.triangles.size(), holed.triangles.size() / 4);
   EXPECT_GT(distance({0.5, 0.5, 0}, result.mesh), 0.1);
 }
 
 TEST(Simplify, KeepsShellsApartThatAreFartherThanTheTolerance) {
-  Mesh shells = flat_sheet(60);
-  append(shells, flat_sheet(60), {0, 0, 0.05});
-  const Simplified result = expect_kept(shells, 0.02);
-  for (const glm::dvec3& p : result.mesh.positions) EXPECT_TRUE(p.z == 0 || p.z == 0.05) << p.z;
+  Mesh shells = flat_sheet(40);
+  append(shells, flat_sheet(40), {0, 0, 0.07});
+  const Simplified result = expect_kept(shells, 0.03);
+  for (const glm::dvec3& p : result.mesh.positions) EXPECT_TRUE(p.z == 0 || p.z == 0.07) << p.z;
   expect_kept(shells, 0.2);  // within the tolerance they may be one
 }
 
@@ -171,16 +171,16 @@ TEST(Simplify, KeepsThinTubesAndSpikes) {
       hair.triangles.push_back({b - 3, b, a});
     }
   }
-  expect_kept(hair, 0.01, 2000);  // ten times as wide as it is
+  expect_kept(hair, 0.01, 1000);  // ten times as wide as it is
 }
 
 TEST(Simplify, LeavesNoiseBeyondTheTolerance) {
-  const Mesh noisy = noisy_sheet(60, 0.2);
+  const Mesh noisy = noisy_sheet(40, 0.2);
   EXPECT_GT(expect_kept(noisy, 0.004).mesh.triangles.size(), noisy.triangles.size() * 9 / 10);
 }
 
 TEST(Simplify, StaysWithinWhereNoiseIsNearTheTolerance) {
-  for (const double noise : {0.002, 0.005, 0.01, 0.02, 0.03}) expect_kept(noisy_sheet(60, noise), 0.01);
+  for (const double noise : {0.003, 0.01, 0.02, 0.04}) expect_kept(noisy_sheet(40, noise), 0.015);
 }
 
 TEST(Simplify, KeepsNonManifoldFaces) {
@@ -190,38 +190,38 @@ TEST(Simplify, KeepsNonManifoldFaces) {
     fins.positions.push_back({(x + 0.5) / 40, 0.5, 0.3});
     fins.triangles.push_back({20 * 41 + x, 20 * 41 + x + 1, at});
   }
-  const Simplified result = expect_kept(fins, 0.005, 2000);
+  const Simplified result = expect_kept(fins, 0.005, 1000);
   EXPECT_LE(distance({0.5 / 40, 0.5, 0.3}, result.mesh), result.distance);
 }
 
 TEST(Simplify, TakesDuplicatesFlipsAndTrianglesWithoutArea) {
-  Mesh mesh = subdivided_sphere(5);
+  Mesh mesh = subdivided_sphere(4);
   const std::vector<glm::uvec3> once = mesh.triangles;
   for (std::size_t i = 0; i < once.size(); i += 3) mesh.triangles.push_back(once[i]);
   for (std::size_t i = 0; i < once.size(); i += 5) mesh.triangles.push_back({once[i].x, once[i].z, once[i].y});
   for (std::uint32_t i = 0; i + 2 < 300; ++i) mesh.triangles.push_back({i, i, i + 2});
   mesh.triangles.push_back({7, 7, 7});
-  expect_kept(mesh, 0.03);
+  expect_kept(mesh, 0.06);
 }
 
 TEST(Simplify, TakesSoupsOfTrianglesThatShareNoVertices) {
-  const Mesh sphere = subdivided_sphere(6);
+  const Mesh sphere = subdivided_sphere(5);
   Mesh soup;
   for (const glm::uvec3& t : sphere.triangles)
     for (int k = 0; k < 3; ++k) soup.positions.push_back(sphere.positions[t[k]]);
   for (std::uint32_t i = 0; i < soup.positions.size(); i += 3) soup.triangles.push_back({i, i + 1, i + 2});
-  EXPECT_LT(expect_kept(soup, 0.05).mesh.triangles.size(), soup.triangles.size() / 4);
+  EXPECT_LT(expect_kept(soup, 0.1).mesh.triangles.size(), soup.triangles.size() / 3);
 }
 
 TEST(Simplify, IsAsGoodFarOffAsNear) {
-  const Mesh near = subdivided_sphere(5);
-  const std::size_t count = simplify(near, 0.03).mesh.triangles.size();
+  const Mesh near = subdivided_sphere(4);
+  const std::size_t count = simplify(near, 0.05).mesh.triangles.size();
   for (const double far : {1e6, 1e9}) {
     const Mesh mesh = moved(near, {far, -far, far});
-    const Simplified result = expect_kept(mesh, 0.03);
+    const Simplified result = expect_kept(mesh, 0.05);
     EXPECT_LT(result.mesh.triangles.size(), 2 * count);
   }
-  expect_kept(moved(near, {1e15, 0, 0}), 0.03);  // where positions are steps of an eighth
+  expect_kept(moved(near, {1e15, 0, 0}), 0.05);  // where positions are steps of an eighth
 }
 
 TEST(Simplify, TakesTinyAndHugeUnits) {
@@ -247,7 +247,7 @@ TEST(Simplify, CarriesNormalsWithTheirVertices) {
 }
 
 TEST(Simplify, FacesAsBefore) {
-  const Simplified result = simplify(subdivided_sphere(6), 0.02);
+  const Simplified result = simplify(subdivided_sphere(5), 0.04);
   for (const glm::uvec3& t : result.mesh.triangles) {
     const Corners c = corners(result.mesh.positions, t);
     EXPECT_GT(glm::dot(glm::cross(c[1] - c[0], c[2] - c[0]), c[0]), 0);
@@ -262,12 +262,11 @@ TEST(Simplify, IsTheSameEachTime) {
   EXPECT_EQ(a.distance, b.distance);
 }
 
-TEST(Simplify, KeepsItsPromiseOnScannedMeshes) {
-  DATA_OR_SKIP(file, "mesh/bun_zipper.ply");
+TEST(Simplify, KeepsItsPromiseOnAModelledMesh) {
+  DATA_OR_SKIP(file, "mesh/spot.obj");
   std::vector<std::string> notes;
-  const Mesh bunny = load_mesh(file, notes);  // 0.15 wide
-  for (const double tolerance : {0.002, 0.005})
-    EXPECT_LT(expect_kept(bunny, tolerance, 100).mesh.triangles.size(), bunny.triangles.size());
+  const Mesh cow = load_mesh(file, notes);  // 1.9 long, with normals
+  EXPECT_LT(expect_kept(cow, 0.03, 200).mesh.triangles.size(), cow.triangles.size() / 2);
 }
 
 TEST(SurfaceDistance, IsThatOfTheNearestPoint) {
