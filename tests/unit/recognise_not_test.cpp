@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/stress/shapes.h"
 #include "engine/plan/recognise/recognise.h"
 #include "recognise_meshes.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/measure/random.h"
+#include "accel/random.h"
 #include "engine/measure/stress/shapes.h"
 #include "engine/measure/tessellate.h"
 #include "engine/plan/recognise/recognise.h"

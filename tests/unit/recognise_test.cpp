@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "accel/tracer.h"
 #include "accel/random.h"
+#include "accel/tracer.h"
 #include "engine/measure/stress/shapes.h"
 #include "engine/measure/tessellate.h"
 #include "engine/tracers.h"

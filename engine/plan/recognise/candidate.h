@@ -53,16 +53,13 @@ struct Patch {
 
 /// A patch that is one of several regions, so that it has an outline.
 struct Region : Patch {
-  Region(const Topology& mesh, const Regions& regions, std::uint32_t id)
-      : Patch{mesh, regions[id]}, regions(regions), id(id) {}
+  const Regions& regions;
+  std::uint32_t id;
 
   bool is_outline(std::uint32_t half_edge) const {
     const std::uint32_t twin = mesh.twins[half_edge];
     return twin == no_id || regions.of(twin / 3) != id;
   }
-
-  const Regions& regions;
-  std::uint32_t id;
 };
 
 }  // namespace rayengine::surfaces

@@ -46,23 +46,22 @@ class Closing {
  public:
   Closing(std::vector<Found>& found, double tolerance) : found_(found), tolerance_(tolerance) {
     for (std::uint32_t i = 0; i < found.size(); ++i)
-      if (found[i].candidate.type == QuadricType::disk)
-        disks_.push_back(i), centers_.push_back(found[i].candidate.to_world.origin);
+      if (found[i].candidate.type == QuadricType::disk) near_.add(i, disk(found[i]).center, disk(found[i]).radius);
+    near_.sort();
   }
 
   void run() {
-    const NearPoints near(centers_, tolerance_);
     for (Found& f : found_)
-      if (may_have_caps(f.candidate)) close(f, near);
+      if (may_have_caps(f.candidate)) close(f);
     std::erase_if(found_, [](const Found& f) { return f.triangles.empty(); });
   }
 
  private:
   /// The unused disk that is a cap within the tolerance, or null.
-  Found* find(const Cap& cap, const NearPoints& near) const {
+  Found* find(const Cap& cap) const {
     Found* best = nullptr;
-    near.each(cap.center, [&](std::uint32_t i) {
-      Found& f = found_[disks_[i]];
+    near_.each(cap.center, cap.radius, [&](std::uint32_t i) {
+      Found& f = found_[i];
       if (f.triangles.empty() || !(error(f, cap) <= tolerance_)) return;
       if (!best || error(f, cap) < error(*best, cap)) best = &f;
     });
@@ -70,11 +69,11 @@ class Closing {
   }
   static double error(const Found& f, const Cap& cap) { return f.residual + distance(disk(f), cap); }
 
-  void close(Found& f, const NearPoints& near) const {
+  void close(Found& f) const {
     const std::vector<Cap> caps = caps_of(f.candidate);
     std::vector<Found*> ends;
     for (const Cap& cap : caps)
-      if (Found* end = find(cap, near)) ends.push_back(end);
+      if (Found* end = find(cap)) ends.push_back(end);
     if (caps.empty() || ends.size() != caps.size() || (ends.size() == 2 && ends[0] == ends[1])) return;
     for (std::size_t i = 0; i < ends.size(); ++i) {
       f.residual = std::max(f.residual, error(*ends[i], caps[i]));
@@ -87,8 +86,7 @@ class Closing {
 
   std::vector<Found>& found_;
   double tolerance_;
-  std::vector<std::uint32_t> disks_;
-  std::vector<glm::dvec3> centers_;
+  NearPoints near_;  // disks
 };
 
 }  // namespace

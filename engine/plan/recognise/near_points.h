@@ -2,35 +2,54 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
-#include <span>
+#include <map>
 #include <utility>
 #include <vector>
 
 namespace rayengine::surfaces {
 
-/// Finds points near others: cells four distances wide, sorted by their hash.
+/// Finds things of about the same size in about the same place: by the power of two of their size, then by cells a
+/// quarter as wide, sorted by their hash.
 class NearPoints {
  public:
-  NearPoints(std::span<const glm::dvec3> points, double distance) : per_cell_(0.25 / distance) {
-    for (std::uint32_t i = 0; i < points.size(); ++i) cells_.emplace_back(hash(glm::floor(points[i] * per_cell_)), i);
-    std::ranges::sort(cells_);
+  void add(std::uint32_t index, const glm::dvec3& point, double size) {
+    const int c = size_class(size);
+    cells_[c].emplace_back(hash(glm::floor(point / width(c))), index);
+  }
+  /// Between the last add() and the first each().
+  void sort() {
+    for (auto& [c, cells] : cells_) std::ranges::sort(cells);
   }
 
-  /// Calls visit(index) for all points within the distance of p, and some others.
+  /// Calls visit(index) for all whose size is at most twice as large or small, and whose distance is at most 1/16 of
+  /// it; and for some others.
   template <class Visit>
-  void each(const glm::dvec3& p, Visit visit) const {
-    const glm::dvec3 corner = glm::floor(p * per_cell_ - 0.5);  // what is near is in the eight cells about it
-    for (int k = 0; k < 8; ++k) {
-      const std::uint64_t cell = hash(corner + glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
-      auto at = std::ranges::lower_bound(cells_, std::pair{cell, 0u});
-      for (; at != cells_.end() && at->first == cell; ++at) visit(at->second);
+  void each(const glm::dvec3& point, double size, Visit visit) const {
+    for (int c = size_class(size) - 1; c <= size_class(size) + 1; ++c) {
+      const auto found = cells_.find(c);
+      if (found == cells_.end()) continue;
+      const glm::dvec3 corner = glm::floor(point / width(c) - 0.5);  // what is near is in the eight cells about it
+      for (int k = 0; k < 8; ++k) each_in(found->second, hash(corner + glm::dvec3(k & 1, k >> 1 & 1, k >> 2)), visit);
     }
   }
 
  private:
+  using Cells = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
+
+  static int size_class(double size) { return std::ilogb(size); }
+  /// At least twice a sixteenth of the largest size that looks in this class: one of the class above.
+  static double width(int size_class) { return std::ldexp(1., size_class - 1); }
+
+  template <class Visit>
+  static void each_in(const Cells& cells, std::uint64_t cell, Visit visit) {
+    auto at = std::ranges::lower_bound(cells, std::pair{cell, 0u});
+    for (; at != cells.end() && at->first == cell; ++at) visit(at->second);
+  }
+
   static std::uint64_t hash(const glm::dvec3& cell) {
     std::uint64_t h = 0;
     for (int i = 0; i < 3; ++i) {
@@ -40,8 +59,7 @@ class NearPoints {
     return h;
   }
 
-  double per_cell_;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> cells_;
+  std::map<int, Cells> cells_;
 };
 
 }  // namespace rayengine::surfaces

@@ -88,7 +88,8 @@ class Recogniser {
   std::vector<std::optional<Verdict>> judge_all(const Topology& mesh, const Regions& regions, Judge judge) const {
     std::vector<std::optional<Verdict>> verdicts(regions.size());
     tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
-      if (regions[i].size() >= fewest_triangles) verdicts[i] = judge({mesh, regions, static_cast<std::uint32_t>(i)});
+      if (regions[i].size() >= fewest_triangles)
+        verdicts[i] = judge({{mesh, regions[i]}, regions, static_cast<std::uint32_t>(i)});
     });
     return verdicts;
   }
@@ -204,6 +205,9 @@ class Recogniser {
 
 Recognition recognise(const Mesh& mesh, double tolerance, Pieces pieces) {
   check_input(mesh, tolerance);
+  if (mesh.triangles.size() >= no_id / 3)
+    throw Error("a mesh of " + std::to_string(mesh.triangles.size()) +
+                " triangles has too many to number its edges: cut it in two");
   return Recogniser(mesh, tolerance).run(pieces);
 }
 
