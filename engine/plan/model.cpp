@@ -1,8 +1,11 @@
 #include "engine/plan/model.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "engine/plan/recognise/recognise.h"
+#include "engine/plan/repeats.h"
 
 namespace rayengine {
 namespace {
@@ -33,8 +36,9 @@ class ModelBuilder {
       : scene_(scene), geometry_(*scene.geometry), plan_(plan), simplifier_(simplifier) {}
 
   Model run() {
+    if (plan_.find_repeats) find_repeated();
     for (object_ = 0; object_ < geometry_.objects.size(); ++object_)
-      if (!replace()) keep();
+      if (!replace() && !instanced()) keep();
     Model model{scene_, std::move(replaced_)};
     if (model.replaced.empty()) return model;
     model.scene.geometry = builder_.build();
@@ -50,6 +54,7 @@ class ModelBuilder {
       case Representation::recognised_parts: return recognised(Pieces::parts);
       case Representation::prepared: return simplified(simplifier_.recall);
       case Representation::simplified: return simplified(simplifier_.make);
+      case Representation::instance: break;  // found below, not planned
     }
     return false;
   }
@@ -84,6 +89,34 @@ class ModelBuilder {
     return true;
   }
 
+  /// Those within the allowance that will be kept as they are, and what they repeat.
+  void find_repeated() {
+    double tolerance = infinity;
+    for (const double allowed : plan_.allowances) tolerance = std::min(tolerance, allowed);
+    const auto kept = [&](std::uint32_t o) { return plan_.objects[o] == Representation::kept; };
+    for (const Repeat& r : find_repeats(geometry_, std::isfinite(tolerance) ? tolerance : 0)) {
+      if (!kept(r.first) || !kept(r.object)) continue;
+      repeats_.emplace(r.object, r);
+      repeats_.try_emplace(r.first, Repeat{r.first, r.first, {}, 0});
+    }
+  }
+
+  bool instanced() {
+    const auto found = repeats_.find(object_);
+    if (found == repeats_.end()) return false;
+    const Repeat& repeat = found->second;
+    std::shared_ptr<const Geometry>& group = groups_[repeat.first];
+    if (!group) {
+      GeometryBuilder one;
+      one.add(geometry_, repeat.first);
+      group = one.build();
+    }
+    add(builder_.add(group, repeat.from_first, material()));
+    if (object_ != repeat.first)
+      replaced_.push_back({object_, Representation::instance, group->primitive_count, 0, 0, repeat.error});
+    return true;
+  }
+
   void keep() { add(builder_.add(geometry_, object_)); }
 
   Replacement replacement(const Mesh& mesh) const {
@@ -97,7 +130,9 @@ class ModelBuilder {
   const Geometry& geometry_;
   const ModelPlan& plan_;
   const Simplifier& simplifier_;
-  std::uint32_t object_ = 0;  // the scene's, that is at hand
+  std::uint32_t object_ = 0;                                         // the scene's, that is at hand
+  std::map<std::uint32_t, Repeat> repeats_;                          // by object
+  std::map<std::uint32_t, std::shared_ptr<const Geometry>> groups_;  // by the object that others repeat
   GeometryBuilder builder_;
   std::vector<std::uint32_t> numbers_;
   std::vector<Replacement> replaced_;
@@ -107,7 +142,7 @@ class ModelBuilder {
 
 Model make_model(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier) {
   const bool nothing = std::ranges::all_of(plan.objects, [](Representation r) { return r == Representation::kept; });
-  return nothing ? Model{scene, {}} : ModelBuilder(scene, plan, simplifier).run();
+  return nothing && !plan.find_repeats ? Model{scene, {}} : ModelBuilder(scene, plan, simplifier).run();
 }
 
 }  // namespace rayengine

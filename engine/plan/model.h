@@ -9,7 +9,7 @@
 
 namespace rayengine {
 
-/// What stands in for an object, or for a part of one.
+/// What stands in for an object, or for a part of one. Of meshes held once those are told that take no room.
 struct Replacement {
   std::uint32_t object = 0;  ///< of the scene
   Representation representation = Representation::recognised;

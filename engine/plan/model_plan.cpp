@@ -1,6 +1,9 @@
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "engine/plan/costs.h"
+#include "engine/plan/repeats.h"
 
 namespace rayengine {
 namespace {
@@ -83,8 +86,12 @@ struct Tally {
   double triangles = 0, seconds = 0, instead_seconds = 0;
 };
 
-constexpr std::array representation_names{"as given", "quadrics in place of pieces", "quadrics in place of parts",
-                                          "coarser meshes, where prepared", "coarser meshes"};
+constexpr std::array representation_names{"as given",
+                                          "quadrics in place of pieces",
+                                          "quadrics in place of parts",
+                                          "coarser meshes, where prepared",
+                                          "coarser meshes",
+                                          "instances"};
 constexpr std::array representation_reasons{"nothing cheaper is within the tolerance",
                                             "patches lie on ellipsoids, found faster than a BVH is built",
                                             "patches lie on quadrics, and there are rays enough to repay the search",
@@ -117,13 +124,36 @@ bool alike(const ObjectStatistics& a, const ObjectStatistics& b) {
   return a.triangles == b.triangles && std::abs(a.spacing - b.spacing) <= 1e-3 * a.spacing;
 }
 
-/// Whether two large meshes may be the same one.
-bool may_repeat(const SceneStatistics& scene) {
+/// Triangles of meshes that may be the same as another, which stays, and how many those are.
+Tally repeated(const SceneStatistics& scene) {
   std::vector<ObjectStatistics> meshes;
   for (const ObjectStatistics& o : scene.objects)
-    if (o.triangles >= smallest_mesh) meshes.push_back(o);
-  std::ranges::sort(meshes, {}, &ObjectStatistics::triangles);
-  return std::ranges::adjacent_find(meshes, alike) != meshes.end();
+    if (o.triangles >= fewest_repeated_triangles) meshes.push_back(o);
+  std::ranges::sort(meshes, {}, [](const ObjectStatistics& o) { return std::pair(o.triangles, o.spacing); });
+  Tally tally;
+  for (std::size_t i = 1; i < meshes.size(); ++i)
+    if (alike(meshes[i - 1], meshes[i])) ++tally.objects, tally.triangles += meshes[i].triangles;
+  return tally;
+}
+
+/// Rays take longer among instances; meshes held once need not be built again.
+std::optional<Choice> instances(const SceneStatistics& scene, const DeviceMeasurements& device) {
+  constexpr double looking = 5e-8;  // seconds a triangle
+  const TracerCost& usual = usual_tracer(device);
+  const Tally tally = repeated(scene);
+  const auto all = static_cast<double>(scene.triangles);
+  const double rays = scene.rays * per_ray(usual.triangle, scene.coherent, all);
+  const double without = all * usual.triangle.build + rays;
+  const double with = (all - tally.triangles) * usual.triangle.build + instance_cost_embree * rays + looking * all;
+  if (tally.objects == 0 || with > worthwhile * without) return {};
+  return Choice{count_of(static_cast<double>(tally.objects), "mesh that may repeat another"),
+                "instances of one",
+                with,
+                0,
+                "as given",
+                without,
+                0,
+                "building the same again takes longer than rays do among instances"};
 }
 
 /// Of the tolerance, what a mesh may be moved by: rounded down to a power of the root of two, so that a camera that
@@ -149,7 +179,10 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
     tally.seconds += best.seconds;
     tally.instead_seconds += options.kept().seconds;
   }
-  plan.find_repeats = may_repeat(scene);
+  if (const auto choice = instances(scene, device)) {
+    plan.find_repeats = true;
+    plan.choices.push_back(*choice);
+  }
   for (std::size_t r = 0; r < tallies.size(); ++r)
     if (tallies[r].objects > 0) plan.choices.push_back(to_choice(r, tallies[r], tolerance, effort));
   return plan;

@@ -17,6 +17,7 @@ enum class Representation : std::uint8_t {
   recognised_parts,  ///< and in place of parts of pieces
   prepared,          ///< a coarser mesh, if one was made before and is kept
   simplified,        ///< a coarser mesh
+  instance,          ///< the same mesh as another object's, held once
 };
 
 /// One decision, and the best alternative that it beat. Costs are seconds of the whole, errors in units of the
@@ -33,7 +34,7 @@ struct Choice {
 struct ModelPlan {
   std::vector<Representation> objects;  ///< one for each
   std::vector<double> allowances;       ///< how far each may be moved, in units of the scene
-  bool find_repeats = false;            ///< whether to look for objects that are the same
+  bool find_repeats = false;            ///< whether meshes that repeat others become instances
   std::vector<Choice> choices;
 };
 

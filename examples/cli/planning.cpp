@@ -47,8 +47,8 @@ std::string error_text(double error, const char* unit) {
 
 Json number(double value) { return value < 0 ? Json(nullptr) : Json(value); }
 
-constexpr std::array representation_names{"kept", "recognised", "recognised in parts", "simplified before",
-                                          "simplified"};
+constexpr std::array representation_names{"kept",       "recognised", "recognised in parts", "simplified before",
+                                          "simplified", "held once"};
 
 const char* name_of(Representation r) { return representation_names[static_cast<std::size_t>(r)]; }
 
@@ -61,10 +61,12 @@ std::string choice_text(const Choice& c, const char* unit) {
 }
 
 std::string replaced_text(const Replacement& r) {
-  return fmt::format("  object {} {}: {} triangles became {}{} triangles, moved by at most {:.2g}\n", r.object,
-                     name_of(r.representation), count_text(r.triangles),
-                     r.quadrics ? count_text(r.quadrics) + " quadrics and " : "", count_text(r.triangles_left),
-                     r.distance);
+  const std::string left = fmt::format("{} triangles", count_text(r.triangles_left));
+  const std::string after = r.representation == Representation::instance ? "another object's"
+                            : r.quadrics ? count_text(r.quadrics) + " quadrics and " + left
+                                         : left;
+  return fmt::format("  object {} {}: {} triangles became {}, moved by at most {:.2g}\n", r.object,
+                     name_of(r.representation), count_text(r.triangles), after, r.distance);
 }
 
 Json to_json(const Choice& c) {
@@ -163,7 +165,10 @@ std::string PlannedScene::text() const {
   const char* unit = unit_name(tolerance_of(options_));
   std::string text = fmt::format("{:<32} {:<32} {:>9} {:>10}   {}\n", "what", "chosen", "cost", "error", "instead of");
   for (const Choice& c : plan_->choices) text += choice_text(c, unit);
-  for (const Replacement& r : plan_->model.replaced) text += replaced_text(r);
+  constexpr std::size_t most_told = 20;
+  const auto& replaced = plan_->model.replaced;
+  for (std::size_t i = 0; i < std::min(replaced.size(), most_told); ++i) text += replaced_text(replaced[i]);
+  if (replaced.size() > most_told) text += fmt::format("  and {} more\n", replaced.size() - most_told);
   return text + fmt::format("planned in {}; predicted: {} to build and trace, {} of memory\n",
                             seconds_text(plan_->seconds), seconds_text(plan_->tracing.seconds),
                             bytes_text(plan_->tracing.bytes));

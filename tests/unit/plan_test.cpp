@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -232,6 +233,41 @@ TEST(PlannedScene, HasNoCracksBetweenQuadricsAndTriangles) {
   const Verification found = verify(scene, planned.model.scene, *tracer, half_pixel, rays);
   EXPECT_EQ(found.broken, 0u);
   EXPECT_GT(found.hits, 20000u);
+}
+
+/// A bumpy ball, thrice in one shape and once in another, the second between the others.
+Scene repeated_balls() {
+  Mesh ball = subdivided_sphere(4), other;
+  for (glm::dvec3& p : ball.positions)  // few bits, so that moving them rounds nothing
+    p = glm::round(0x1p20 * p * (1 + 0.1 * std::sin(9 * p.x) * std::cos(8 * p.y))) * 0x1p-20;
+  other = ball;
+  for (glm::dvec3& p : other.positions) p.z *= 0.75;
+  GeometryBuilder builder;
+  builder.add(ball, 0, Affine::translate({-2, 0, 0}));
+  builder.add(other);
+  builder.add(ball, 0, Affine::translate({2, 0, 0}));
+  builder.add(ball, 0, Affine::translate({0, 0, 4}) * Affine::rotate({1, 2, 3}, 50));
+  Scene scene;
+  scene.geometry = builder.build();
+  scene.camera = {.from = {3, -30, 5}, .at = {0, 0, 1}, .fov = 20, .size = {256, 256}};
+  return scene;
+}
+
+TEST(PlannedScene, HoldsMeshesOnceThatRepeat) {
+  const Scene scene = repeated_balls();
+  const DeviceMeasurements device = eager_device();
+  for (const Tolerance& tolerance : {exact, half_pixel}) {
+    const Planned planned = plan_scene(scene, {.tolerance = tolerance, .rays = 1e5, .device = &device});
+    const Scene& model = planned.model.scene;
+    const std::size_t turned = tolerance.value > 0;  // turns are rounded
+    ASSERT_EQ(planned.model.replaced.size(), 1 + turned);
+    EXPECT_EQ(model.geometry->instances.size(), 2 + turned);
+    EXPECT_EQ(model.geometry->groups.size(), 1u);
+    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+    const Verification found = verify(scene, model, *tracer, tolerance, random_camera_rays(scene.camera, 20000));
+    EXPECT_EQ(found.broken, 0u) << tolerance.value;
+    EXPECT_GT(found.hits, 1000u);
+  }
 }
 
 TEST(PlannedScene, AtZeroIsTheSceneItself) {
