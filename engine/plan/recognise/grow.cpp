@@ -86,7 +86,7 @@ class Growth {
     std::vector<std::uint32_t> patch = seed_patch(seed);
     for (int round = 0; round < 4; ++round) {
       const std::optional<Cylinder> cylinder = fit(patch);
-      if (!cylinder) return {};
+      if (!cylinder) break;  // no cylinder after all, which need not be found out again from each of its triangles
       std::vector<std::uint32_t> more = on(*cylinder, seed);
       if (more.size() <= patch.size() && round > 0) break;
       patch = std::move(more);

@@ -160,14 +160,18 @@ class Recogniser {
   }
 
   std::optional<Verdict> judge_patch(const Region& region) const {
-    std::vector<Candidate> candidates = fit_plates(region);
-    for (const Candidate& c : fit_tubes(region)) candidates.push_back(c);
-    if (const auto c = fit_zone(region)) candidates.push_back(*c);
-    // Whole spheres and ellipsoids had their turn, and some of them were withdrawn.
-    if (const auto c = fit_quadric(region); c && c->type != QuadricType::sphere) candidates.push_back(*c);
-    for (const Candidate& c : candidates)
-      if (const Verdict v = verdict(region, c); v.residual) return v;
+    for (const auto fit : {fit_plates, fit_tubes, fit_others})
+      for (const Candidate& c : fit(region))
+        if (const Verdict v = verdict(region, c); v.residual) return v;
     return {};
+  }
+
+  static std::vector<Candidate> fit_others(const Region& region) {
+    std::vector<Candidate> found;
+    if (const auto c = fit_zone(region)) found.push_back(*c);
+    // Whole spheres and ellipsoids had their turn, and some of them were withdrawn.
+    if (const auto c = fit_quadric(region); c && c->type != QuadricType::sphere) found.push_back(*c);
+    return found;
   }
 
   /// Shells that lie in each other's tolerance, whether proven or not, are left as they are.

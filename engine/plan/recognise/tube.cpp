@@ -109,6 +109,9 @@ double noise(const Patch& patch, const Cloud& cloud, const Tube& tube) {
 /// Steps converge in quadrature where there is a tube: what is still this far off after two of them is none.
 constexpr double hopeless = 0.05;
 
+/// A cylinder that is off by no more than roundings leaves nothing for a cone to do better.
+constexpr double exact = 1e-12;
+
 template <Step N>
 std::optional<FittedTube> fit(const Patch& patch, const Cloud& cloud, const GaussMap& map, double slope) {
   std::optional<Tube> tube = first_guess(patch, cloud, map.axis, slope);
@@ -134,6 +137,7 @@ std::vector<FittedTube> fit_cylinder_and_cones(const Patch& patch, const Cloud& 
   if (!map) return {};
   std::vector<FittedTube> found;
   if (const auto tube = fit<cylinder>(patch, cloud, *map, 0)) found.push_back(*tube);
+  if (!found.empty() && found[0].noise < exact * found[0].tube.radius) return found;
   const double sine = std::clamp(map->cosine, -1., 1.), slope = sine / std::sqrt(1 - sine * sine);
   for (const double sign : {1., -1.})  // the normals do not say which side of the surface is its outside
     if (const auto tube = fit<cone>(patch, cloud, *map, sign * slope); tube && tube->tube.slope != 0)
