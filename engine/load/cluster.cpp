@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "accel/ray.h"
+#include "engine/load/cells.h"
 #include "engine/load/incidence.h"
 #include "engine/load/surface_distance.h"
 
@@ -19,9 +20,6 @@ namespace {
 using Positions = std::span<const glm::dvec3>;
 using Triangles = std::span<const glm::uvec3>;
 
-constexpr double widest = 4;                // cells of level 0, in limits; each level halves them
-constexpr std::uint8_t finest = 3;          // cells of half a limit
-constexpr std::uint8_t alone = finest + 1;  // vertices that are their own cluster
 constexpr int most_rounds = 12;
 constexpr int most_tried = 32;        // coarse triangles for each part of an original one
 constexpr double near_enough = 0.3;   // of a limit: no nearer coarse triangle is looked for
@@ -35,36 +33,9 @@ constexpr double worthwhile_share = 0.5;  // of triangles that may be left
 /// No point of a triangle is farther from all of its corners than its longest edge by this.
 constexpr double root_3 = std::numbers::sqrt3;
 
-glm::dvec3 area_vector(const Corners& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
-
-/// The axis that a normal is nearest to, and its sign: 0 to 5. It keeps the sides of a sheet apart.
-std::uint64_t facing(const glm::dvec3& n) {
-  const glm::dvec3 size = glm::abs(n);
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0));
-}
-
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
-  hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-  return hash ^ hash >> 32;
-}
-
 struct CoarseTriangle {
   glm::uvec3 corners;    // clusters, the lowest first
   std::uint32_t source;  // the first triangle that became it
-};
-
-/// One partition of the vertices.
-struct Clusters {
-  std::vector<std::uint32_t> of;              // by vertex; no_id where no triangle uses it
-  std::vector<std::uint32_t> first, members;  // vertices of cluster c: members[first[c], first[c + 1])
-  std::vector<std::uint32_t> representative;  // by cluster
-  std::vector<glm::dvec3> normals;            // of all triangles at its vertices, not normalised
-
-  std::span<const std::uint32_t> members_of(std::uint32_t c) const {
-    return {members.data() + first[c], members.data() + first[c + 1]};
-  }
-  std::size_t count() const { return representative.size(); }
 };
 
 class Clustering {
@@ -73,22 +44,13 @@ class Clustering {
       : positions_(positions),
         triangles_(triangles),
         limit_(limit),
-        normals_(positions.size(), glm::dvec3(0)),
-        level_(positions.size(), unused),
+        cells_(positions, triangles, limit),
+        of_vertex_(positions.size(), triangles, [](const glm::uvec3& t) { return t; }),
         stir_(positions.size(), Stir::own),
-        nearness_(positions.size(), infinity) {
-    for (const glm::uvec3& t : triangles_)
-      for (int k = 0; k < 3; ++k) {
-        normals_[t[k]] += area_vector(corners(positions_, t));
-        level_[t[k]] = 0;
-      }
-    of_vertex_ = Incidence(positions_.size(), triangles_, [](const glm::uvec3& t) { return t; });
-  }
+        nearness_(positions.size(), infinity) {}
 
   std::vector<glm::uvec3> run() {
-    sort_into_cells();
     for (int round = 0; round < most_rounds; ++round) {
-      number();
       collect();
       if (double(coarse_.size()) > worthwhile_share * double(triangles_.size())) break;  // more cells leave more
       if (!refine(round)) return result();
@@ -97,62 +59,6 @@ class Clustering {
   }
 
  private:
-  static constexpr std::uint8_t unused = 255;
-  using Key = std::pair<std::uint64_t, std::uint32_t>;  // of a cell, and a vertex in it
-
-  // Cells whose hashes are equal by chance become one cluster, which the proof then rejects.
-  std::uint64_t cell(std::uint32_t v) const {
-    if (level_[v] == alone) return mixed(mixed(alone, v), 0);
-    const double side = std::ldexp(widest * limit_, -level_[v]);
-    std::uint64_t hash = 8 * level_[v] + facing(normals_[v]);
-    for (int k = 0; k < 3; ++k)
-      hash = mixed(hash, static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(positions_[v][k] / side))));
-    return hash;
-  }
-
-  void sort_into_cells() {
-    for (std::uint32_t v = 0; v < positions_.size(); ++v)
-      if (level_[v] != unused) keys_.push_back({0, v});
-    tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t i) { keys_[i].first = cell(keys_[i].second); });
-    tbb::parallel_sort(keys_);
-  }
-
-  /// Makes clusters of equal keys.
-  void number() {
-    clusters_ = {std::vector<std::uint32_t>(positions_.size(), no_id), {}, {}, {}, {}};
-    clusters_.members.reserve(keys_.size());
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-      if (i == 0 || keys_[i].first != keys_[i - 1].first) clusters_.first.push_back(static_cast<std::uint32_t>(i));
-      clusters_.of[keys_[i].second] = static_cast<std::uint32_t>(clusters_.first.size() - 1);
-      clusters_.members.push_back(keys_[i].second);
-    }
-    clusters_.representative.resize(clusters_.first.size());
-    clusters_.normals.resize(clusters_.first.size());
-    clusters_.first.push_back(static_cast<std::uint32_t>(keys_.size()));
-    tbb::parallel_for(std::size_t{0}, clusters_.count(),
-                      [&](std::size_t c) { represent(static_cast<std::uint32_t>(c)); });
-  }
-
-  /// Cells lie within those that they are halves of, so that a cluster is split without a look at the others.
-  void split(std::uint32_t cluster) {
-    const auto first = keys_.begin() + clusters_.first[cluster], last = keys_.begin() + clusters_.first[cluster + 1];
-    std::for_each(first, last, [&](Key& key) { key.first = cell(key.second); });
-    std::sort(first, last);
-  }
-
-  /// By the vertex that is nearest to the mean, so that no vertex is moved off the surface.
-  void represent(std::uint32_t c) {
-    const auto members = clusters_.members_of(c);
-    glm::dvec3 mean(0), normal(0);
-    for (const std::uint32_t v : members)
-      mean += positions_[v] / static_cast<double>(members.size()), normal += normals_[v];
-    clusters_.normals[c] = normal;
-    double least = infinity;
-    for (const std::uint32_t v : members)
-      if (const glm::dvec3 d = positions_[v] - mean; glm::dot(d, d) < least)
-        least = glm::dot(d, d), clusters_.representative[c] = v;
-  }
-
   Corners corners_of(const CoarseTriangle& k) const {
     return corners(positions_, {clusters_.representative[k.corners.x], clusters_.representative[k.corners.y],
                                 clusters_.representative[k.corners.z]});
@@ -278,7 +184,7 @@ class Clustering {
   /// Clusters where the proof fails, of those where it has to be made anew.
   std::vector<char> failures() {
     tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(positions_.size()), [&](std::uint32_t v) {
-      if (stir_[v] != Stir::none && level_[v] != unused) nearness_[v] = distance_from_coarse(v);
+      if (stir_[v] != Stir::none && clusters_.of[v] != no_id) nearness_[v] = distance_from_coarse(v);
     });
 
     std::vector<char> lost(triangles_.size()), unfounded(coarse_.size()), fails(clusters_.count());
@@ -311,14 +217,9 @@ class Clustering {
     const bool hopeless = is_hopeless();
     const std::vector<char> fails = hopeless ? std::vector<char>(clusters_.count(), true) : failures();
     stir(fails);
-    const int step = round >= most_rounds / 2 ? alone : hopeless ? 2 : 1;
-    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(clusters_.count()), [&](std::uint32_t c) {
-      if (!fails[c]) return;
-      for (const std::uint32_t v : clusters_.members_of(c))
-        level_[v] = static_cast<std::uint8_t>(std::min<int>(level_[v] + step, alone));
-      split(c);
-    });
-    return std::ranges::count(fails, true) > 0;
+    if (std::ranges::count(fails, true) == 0) return false;
+    cells_.split(fails, round >= most_rounds / 2 ? Cells::levels : hopeless ? 2 : 1);
+    return true;
   }
 
   std::vector<glm::uvec3> result() const {
@@ -332,10 +233,8 @@ class Clustering {
   const Positions positions_;
   const Triangles triangles_;
   const double limit_;
-  std::vector<glm::dvec3> normals_;  // by vertex, not normalised
-  std::vector<std::uint8_t> level_;  // by vertex
-  std::vector<Key> keys_;            // equal ones side by side
-  Clusters clusters_;
+  Cells cells_;
+  const Clusters& clusters_ = cells_.clusters();
   std::vector<CoarseTriangle> coarse_;
   std::vector<Corners> coarse_corners_;
   Incidence of_vertex_;  // original triangles

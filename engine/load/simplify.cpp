@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "accel/tracer.h"
 #include "engine/load/cluster.h"
 #include "engine/load/decimate.h"
+#include "engine/load/surface_distance.h"
 
 namespace rayengine {
 namespace {
@@ -44,9 +44,7 @@ double roundings(const std::vector<glm::dvec3>& local) {
 }
 
 std::vector<glm::uvec3> with_area(const std::vector<glm::dvec3>& positions, std::vector<glm::uvec3> triangles) {
-  std::erase_if(triangles, [&](const glm::uvec3& t) {
-    return glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]) == glm::dvec3(0);
-  });
+  std::erase_if(triangles, [&](const glm::uvec3& t) { return area_vector(corners(positions, t)) == glm::dvec3(0); });
   return triangles;
 }
 

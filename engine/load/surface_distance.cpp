@@ -38,6 +38,8 @@ double longest_edge(const Corners& c) {
   return std::sqrt(std::max({squared(c[1] - c[0]), squared(c[2] - c[1]), squared(c[0] - c[2])}));
 }
 
+glm::dvec3 area_vector(const Corners& c) { return glm::cross(c[1] - c[0], c[2] - c[0]); }
+
 std::array<Corners, 4> quartered(const Corners& c) {
   const glm::dvec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
   return {{{c[0], ab, ca}, {ab, c[1], bc}, {ca, bc, c[2]}, {ab, bc, ca}}};

@@ -18,6 +18,9 @@ inline Corners corners(std::span<const glm::dvec3> positions, const glm::uvec3& 
 
 double longest_edge(const Corners& triangle);
 
+/// Along the normal, and twice as long as the area.
+glm::dvec3 area_vector(const Corners& triangle);
+
 /// Cut at the middles of its edges.
 std::array<Corners, 4> quartered(const Corners& triangle);
 
