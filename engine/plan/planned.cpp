@@ -1,15 +1,18 @@
 #include "engine/plan/planned.h"
 
 #include "accel/stopwatch.h"
+#include "engine/plan/canonical.h"
 
 namespace rayengine {
 
 Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   const Stopwatch watch;
   const DeviceMeasurements& device = options.device ? *options.device : usual_device();
-  const SceneStatistics given = gather_statistics(scene, options.rays, options.coherent);
+  const CanonicalScene canonical = in_canonical_forms(scene, options.tolerance);
+  const SceneStatistics given = gather_statistics(canonical.scene, options.rays, options.coherent);
   const ModelPlan model = plan_model(given, device, options.tolerance, options.effort);
-  Planned result{make_model(scene, model, options.simplifier), {}, model.choices, 0};
+  Planned result{make_model(canonical.scene, model, options.simplifier), {}, canonical.choices, 0};
+  result.choices.insert(result.choices.end(), model.choices.begin(), model.choices.end());
   const SceneStatistics made =
       result.model.replaced.empty() ? given : gather_statistics(result.model.scene, options.rays, options.coherent);
   result.tracing = plan_tracing(made, device, options.tolerance, options.gpu);

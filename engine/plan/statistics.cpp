@@ -13,10 +13,6 @@
 namespace rayengine {
 namespace {
 
-double distance_to(const Box& box, const glm::dvec3& p) {
-  return glm::length(glm::max(glm::max(box.lower - p, p - box.upper), glm::dvec3(0)));
-}
-
 Box bounds_of_mesh(const Geometry& g, std::uint32_t object) {
   if (g.objects.size() == 1) return g.bounds;
   Box box;
@@ -68,6 +64,10 @@ ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const glm::dve
 void check(const Tolerance& tolerance) {
   if (!(tolerance.value >= 0 && tolerance.value < infinity))
     throw Error("a tolerance of " + std::to_string(tolerance.value) + " says nothing: give 0, which is exact, or more");
+}
+
+double distance_to(const Box& box, const glm::dvec3& p) {
+  return glm::length(glm::max(glm::max(box.lower - p, p - box.upper), glm::dvec3(0)));
 }
 
 SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent) {

@@ -46,6 +46,9 @@ struct SceneStatistics {
 /// Looks at bounds and at a sample of each mesh, so that the time it takes does not grow with their size.
 SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent);
 
+/// 0 within the box.
+double distance_to(const Box& box, const glm::dvec3& p);
+
 /// Rays that a picture will ask for, about: the eye's, one to each light, and bounces where something shines.
 double expected_rays(const Scene& scene, int spp);
 
