@@ -43,6 +43,9 @@ TEST(RecogniseNot, ADoubledShell) {
     expect_untouched(mesh, 0.05);
     expect_untouched(soup(mesh), 0.05);
   }
+  Mesh mixed = one;
+  append(mixed, soup(one));
+  expect_untouched(mixed, 0.05);
   Mesh same = one;  // twice over the same vertices
   same.triangles.insert(same.triangles.end(), one.triangles.begin(), one.triangles.end());
   expect_untouched(same, 0.05);

@@ -67,9 +67,7 @@ class Recogniser {
       find_between_plates(mesh);
       grow(mesh);
       close_with_caps(found_, tolerance_);
-      const std::vector<std::uint32_t> back = take_back_cracked(mesh, found_, tolerance_);
-      waiting_.insert(waiting_.end(), back.begin(), back.end());
-      std::ranges::sort(waiting_);
+      give_back(take_back_cracked(mesh, found_, tolerance_));
     }
     std::ranges::sort(found_, {}, [](const Found& f) { return f.triangles[0]; });
     Recognition result;
@@ -174,15 +172,30 @@ class Recogniser {
     return found;
   }
 
-  /// Shells that lie in each other's tolerance, whether proven or not, are left as they are.
-  void withdraw_doubled(std::vector<std::optional<Verdict>>& verdicts) const {
+  /// Shells that lie in each other's tolerance, whether proven or not, are left as they are; so are those found before,
+  /// all of which are whole.
+  void withdraw_doubled(std::vector<std::optional<Verdict>>& verdicts) {
     std::vector<Affine> shells;
+    for (const Found& f : found_) shells.push_back(f.candidate.to_world);
     std::vector<std::size_t> owners;
     for (std::size_t i = 0; i < verdicts.size(); ++i)
       if (verdicts[i]) shells.push_back(verdicts[i]->candidate.to_world), owners.push_back(i);
     const std::vector<bool> twice = doubled(shells, 2 * tolerance_);
     for (std::size_t i = 0; i < owners.size(); ++i)
-      if (twice[i]) verdicts[owners[i]].reset();
+      if (twice[found_.size() + i]) verdicts[owners[i]].reset();
+    std::vector<std::uint32_t> back;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (!twice[i]) continue;
+      back.insert(back.end(), found_[i].triangles.begin(), found_[i].triangles.end());
+      found_[i].triangles.clear();
+    }
+    std::erase_if(found_, [](const Found& f) { return f.triangles.empty(); });
+    give_back(back);
+  }
+
+  void give_back(std::span<const std::uint32_t> triangles) {
+    waiting_.insert(waiting_.end(), triangles.begin(), triangles.end());
+    std::ranges::sort(waiting_);
   }
 
   /// Moves what is proven from the triangles that wait to the result.
