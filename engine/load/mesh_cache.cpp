@@ -31,13 +31,16 @@ Bytes bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
+/// So that a look at the names tells what need not be hashed.
+std::string prefix(std::size_t triangles) { return std::to_string(triangles) + "-"; }
+
 fs::path file_of(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
   const fs::path folder = cache_folder();
   if (folder.empty()) return {};
   ContentHash hash;
   hash.add(bytes_of(Header().format)).add(bytes_of(tolerance)).add(bytes_of(most_decimated));
   hash.add(bytes(mesh.positions)).add(bytes(mesh.normals)).add(bytes(mesh.triangles));
-  return folder / (hash.name() + extension);
+  return folder / (prefix(mesh.triangles.size()) + hash.name() + extension);
 }
 
 std::string hash_of(const Header& header, const Mesh& mesh) {
@@ -125,6 +128,14 @@ std::optional<Simplified> find(const fs::path& file, const Mesh& mesh) {
 }
 
 }  // namespace
+
+bool may_have_simplified(std::size_t triangles) {
+  std::error_code ignored;
+  const std::string start = prefix(triangles);
+  for (const auto& entry : fs::directory_iterator(cache_folder(), ignored))
+    if (entry.path().filename().string().starts_with(start)) return true;
+  return false;
+}
 
 std::optional<Simplified> find_simplified(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
   return find(file_of(mesh, tolerance, most_decimated), mesh);

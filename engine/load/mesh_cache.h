@@ -10,6 +10,9 @@ namespace rayengine {
 /// Bytes that meshes may take in the cache folder (see accel/cache_folder.h); those unused for longest go first.
 inline constexpr std::uintmax_t mesh_cache_limit = std::uintmax_t{512} << 20;
 
+/// Whether anything is kept that was made of a mesh of so many triangles: quick, for there mostly is not.
+bool may_have_simplified(std::size_t triangles);
+
 /// What simplify() gave for the same mesh, bit for bit, and the same numbers before. Files that are truncated, damaged
 /// or of another version are as good as none.
 std::optional<Simplified> find_simplified(const Mesh& mesh, double tolerance,

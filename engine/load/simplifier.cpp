@@ -15,7 +15,8 @@ std::optional<CoarserMesh> recall(const Mesh& mesh, double distance) {
 }  // namespace
 
 Simplifier cached_simplifier() {
-  return {[](const Mesh& mesh, double distance) { return as_coarser(simplify_cached(mesh, distance)); }, recall};
+  return {[](const Mesh& mesh, double distance) { return as_coarser(simplify_cached(mesh, distance)); }, recall,
+          may_have_simplified};
 }
 
 }  // namespace rayengine

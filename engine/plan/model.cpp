@@ -36,6 +36,7 @@ class ModelBuilder {
       : scene_(scene), geometry_(*scene.geometry), plan_(plan), simplifier_(simplifier) {}
 
   Model run() {
+    if (!may_change()) return {scene_, {}};
     if (plan_.find_repeats) find_repeated();
     for (object_ = 0; object_ < geometry_.objects.size(); ++object_)
       if (!replace() && !instanced()) keep();
@@ -52,7 +53,7 @@ class ModelBuilder {
       case Representation::kept: return false;
       case Representation::recognised: return recognised(Pieces::whole);
       case Representation::recognised_parts: return recognised(Pieces::parts);
-      case Representation::prepared: return simplified(simplifier_.recall);
+      case Representation::prepared: return may_recall(object_) && simplified(simplifier_.recall);
       case Representation::simplified: return simplified(simplifier_.make);
       case Representation::instance: break;  // found below, not planned
     }
@@ -117,6 +118,19 @@ class ModelBuilder {
     return true;
   }
 
+  bool may_recall(std::uint32_t object) const {
+    return simplifier_.may_recall && simplifier_.may_recall(primitive_count(geometry_, object));
+  }
+
+  /// Where not, nothing need be copied.
+  bool may_change() const {
+    if (plan_.find_repeats) return true;
+    for (std::uint32_t i = 0; i < plan_.objects.size(); ++i)
+      if (plan_.objects[i] != Representation::kept && (plan_.objects[i] != Representation::prepared || may_recall(i)))
+        return true;
+    return false;
+  }
+
   void keep() { add(builder_.add(geometry_, object_)); }
 
   Replacement replacement(const Mesh& mesh) const {
@@ -141,8 +155,7 @@ class ModelBuilder {
 }  // namespace
 
 Model make_model(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier) {
-  const bool nothing = std::ranges::all_of(plan.objects, [](Representation r) { return r == Representation::kept; });
-  return nothing && !plan.find_repeats ? Model{scene, {}} : ModelBuilder(scene, plan, simplifier).run();
+  return ModelBuilder(scene, plan, simplifier).run();
 }
 
 }  // namespace rayengine

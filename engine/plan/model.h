@@ -37,6 +37,7 @@ struct CoarserMesh {
 struct Simplifier {
   std::function<CoarserMesh(const Mesh& mesh, double distance)> make;
   std::function<std::optional<CoarserMesh>(const Mesh& mesh, double distance)> recall;  ///< what was made before
+  std::function<bool(std::size_t triangles)> may_recall;  ///< a quick look whether there can be such
 };
 
 /// Carries out the plan. What turns out not to keep the allowances, or not to save anything, stays as it is; where

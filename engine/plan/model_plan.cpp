@@ -1,6 +1,6 @@
 #include <array>
 #include <optional>
-#include <utility>
+#include <tuple>
 
 #include "engine/plan/costs.h"
 #include "engine/plan/repeats.h"
@@ -84,6 +84,13 @@ class Options {
 struct Tally {
   std::size_t objects = 0;
   double triangles = 0, seconds = 0, instead_seconds = 0;
+
+  void add(const ObjectStatistics& object, double cost, double cost_as_given) {
+    ++objects;
+    triangles += object.triangles;
+    seconds += cost;
+    instead_seconds += cost_as_given;
+  }
 };
 
 constexpr std::array representation_names{"as given",
@@ -124,36 +131,43 @@ bool alike(const ObjectStatistics& a, const ObjectStatistics& b) {
   return a.triangles == b.triangles && std::abs(a.spacing - b.spacing) <= 1e-3 * a.spacing;
 }
 
-/// Triangles of meshes that may be the same as another, which stays, and how many those are.
-Tally repeated(const SceneStatistics& scene) {
-  std::vector<ObjectStatistics> meshes;
-  for (const ObjectStatistics& o : scene.objects)
-    if (o.triangles >= fewest_repeated_triangles) meshes.push_back(o);
-  std::ranges::sort(meshes, {}, [](const ObjectStatistics& o) { return std::pair(o.triangles, o.spacing); });
-  Tally tally;
-  for (std::size_t i = 1; i < meshes.size(); ++i)
-    if (alike(meshes[i - 1], meshes[i])) ++tally.objects, tally.triangles += meshes[i].triangles;
-  return tally;
+/// Large meshes that may be the same as others.
+struct Repeated {
+  std::vector<bool> is;  ///< of each object
+  std::size_t more = 0;  ///< how many there are beyond one of each
+  double triangles = 0;  ///< of those
+};
+
+Repeated likely_repeats(const SceneStatistics& scene) {
+  std::vector<std::uint32_t> meshes;
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+    if (scene.objects[i].triangles >= fewest_repeated_triangles) meshes.push_back(i);
+  const auto key = [&](std::uint32_t i) { return std::tuple(scene.objects[i].triangles, scene.objects[i].spacing, i); };
+  std::ranges::sort(meshes, {}, key);
+  Repeated repeated{std::vector<bool>(scene.objects.size(), false)};
+  for (std::size_t i = 1; i < meshes.size(); ++i) {
+    if (!alike(scene.objects[meshes[i - 1]], scene.objects[meshes[i]])) continue;
+    repeated.is[meshes[i - 1]] = repeated.is[meshes[i]] = true;
+    ++repeated.more;
+    repeated.triangles += scene.objects[meshes[i]].triangles;
+  }
+  return repeated;
 }
 
 /// Rays take longer among instances; meshes held once need not be built again.
-std::optional<Choice> instances(const SceneStatistics& scene, const DeviceMeasurements& device) {
+std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics& scene,
+                                const DeviceMeasurements& device, const Tolerance& tolerance) {
   constexpr double looking = 5e-8;  // seconds a triangle
   const TracerCost& usual = usual_tracer(device);
-  const Tally tally = repeated(scene);
   const auto all = static_cast<double>(scene.triangles);
   const double rays = scene.rays * per_ray(usual.triangle, scene.coherent, all);
+  const double slower = tolerance.value == 0 ? instance_cost_bvh : instance_cost_embree;  // what will trace them
   const double without = all * usual.triangle.build + rays;
-  const double with = (all - tally.triangles) * usual.triangle.build + instance_cost_embree * rays + looking * all;
-  if (tally.objects == 0 || with > worthwhile * without) return {};
-  return Choice{count_of(static_cast<double>(tally.objects), "mesh that may repeat another"),
-                "instances of one",
-                with,
-                0,
-                "as given",
-                without,
-                0,
-                "building the same again takes longer than rays do among instances"};
+  const double with = (all - repeated.triangles) * usual.triangle.build + slower * rays + looking * all;
+  if (repeated.more == 0 || with > worthwhile * without) return {};
+  return Choice{
+      count_of(static_cast<double>(repeated.more), "repetition"),         "instances", with, 0, "as given", without, 0,
+      "building the same again takes longer than rays do among instances"};
 }
 
 /// Of the tolerance, what a mesh may be moved by: rounded down to a power of the root of two, so that a camera that
@@ -166,22 +180,19 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
                      const Effort& effort) {
   check(tolerance);
   ModelPlan plan;
-  std::array<Tally, representation_names.size()> tallies;
-  for (const ObjectStatistics& o : scene.objects) {
-    const double allowed = rounded(model_share * allowance(tolerance, o, scene.pixel));
-    const Options options(o, allowed, scene, device, effort);
-    const Option best = options.best();
-    plan.objects.push_back(best.representation);
-    plan.allowances.push_back(allowed);
-    Tally& tally = tallies[static_cast<std::size_t>(best.representation)];
-    ++tally.objects;
-    tally.triangles += o.triangles;
-    tally.seconds += best.seconds;
-    tally.instead_seconds += options.kept().seconds;
-  }
-  if (const auto choice = instances(scene, device)) {
+  const Repeated repeated = likely_repeats(scene);
+  if (const auto choice = instances(repeated, scene, device, tolerance)) {
     plan.find_repeats = true;
     plan.choices.push_back(*choice);
+  }
+  std::array<Tally, representation_names.size()> tallies;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const ObjectStatistics& o = scene.objects[i];
+    plan.allowances.push_back(rounded(model_share * allowance(tolerance, o, scene.pixel)));
+    const Options options(o, plan.allowances.back(), scene, device, effort);
+    const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
+    plan.objects.push_back(best.representation);
+    tallies[static_cast<std::size_t>(best.representation)].add(o, best.seconds, options.kept().seconds);
   }
   for (std::size_t r = 0; r < tallies.size(); ++r)
     if (tallies[r].objects > 0) plan.choices.push_back(to_choice(r, tallies[r], tolerance, effort));

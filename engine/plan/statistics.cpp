@@ -39,6 +39,12 @@ double thickness(const Quadric& q, double radius) {
   return q.type == QuadricType::general ? std::min(unit, radius) : unit;
 }
 
+void count(const Geometry& g, SceneStatistics& result) {
+  result.triangles += g.triangles.size();
+  result.quadrics += g.quadrics.size();
+  for (const Quadric& q : g.quadrics) ++result.quadrics_of[static_cast<std::size_t>(q.type)];
+}
+
 ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const glm::dvec3& eye) {
   const Object& o = g.objects[object];
   const Box box = bounds_of(g, object);
@@ -77,10 +83,9 @@ SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent
   result.objects.resize(g.objects.size());
   tbb::parallel_for(std::size_t{0}, g.objects.size(),
                     [&](std::size_t i) { result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), camera.from); });
-  result.triangles = g.triangles.size();
-  result.quadrics = g.quadrics.size();
+  count(g, result);
+  for (const auto& group : g.groups) count(*group, result);
   result.instances = g.instances.size();
-  for (const Quadric& q : g.quadrics) ++result.quadrics_of[static_cast<std::size_t>(q.type)];
   const glm::dvec3 eye = glm::abs(camera.from);
   result.extent = std::max({g.bounds.finite() ? g.bounds.extent() : 0, eye.x, eye.y, eye.z});
   result.pixel = pixel_angle(camera);

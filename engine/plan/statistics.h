@@ -33,7 +33,7 @@ struct ObjectStatistics {
 /// What a plan must know of a scene.
 struct SceneStatistics {
   std::vector<ObjectStatistics> objects;
-  std::uint64_t triangles = 0, quadrics = 0, instances = 0;     ///< instances are counted, not what they place
+  std::uint64_t triangles = 0, quadrics = 0, instances = 0;     ///< what instances place is counted once
   std::array<std::uint64_t, quadric_type_count> quadrics_of{};  ///< by type
   double extent = 0;                                            ///< the largest finite coordinate, the eye's included
   double pixel = 0;  ///< what a pixel subtends at the middle of the picture, in radians

@@ -5,9 +5,15 @@
 namespace rayengine {
 namespace {
 
+/// Embree's fast mode lets rays through between triangles: those are wrong by any distance.
+bool leaks(const ObjectStatistics& o, const TracerCost& cost) {
+  return o.kind != Object::Kind::quadric && cost.precision <= Precision::fast;
+}
+
 /// First-order: half a dozen roundings of coordinates as large as the scene's, and of the way to the object and through
 /// it. The textbook formula loses the square of the distance against the radius: it is as if the radius were off.
 double position_error(const ObjectStatistics& o, const SceneStatistics& scene, const TracerCost& cost) {
+  if (leaks(o, cost)) return infinity;
   constexpr double roundings = 6;
   const double way = std::min(o.distance + 2 * o.radius, 4 * scene.extent);
   if (o.kind == Object::Kind::mesh) return roundings * cost.triangle_roundoff * (scene.extent + way);

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <charconv>
 #include <iostream>
+#include <set>
 
 #include "accel/stopwatch.h"
 #include "engine/load/load.h"
@@ -129,7 +130,9 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
   const Stopwatch watch;
   LoadedScene loaded{load_scene(file)};
   loaded.seconds = watch.seconds();
-  for (const std::string& text : loaded.scene.notes) note(common, text);
+  std::set<std::string> said;  // a mesh that is placed often says the same each time
+  for (const std::string& text : loaded.scene.notes)
+    if (said.insert(text).second) note(common, text);
   return loaded;
 }
 

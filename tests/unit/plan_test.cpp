@@ -99,6 +99,16 @@ TEST(Plan, TakesThePrecisionThatTheDistanceNeeds) {
   EXPECT_LE(plan.error, 0.1 * half_pixel.value);
 }
 
+/// Embree's fast mode is no choice where a ray can pass between triangles.
+TEST(Plan, TakesNoTracerThatLeaks) {
+  DeviceMeasurements device = usual_device();
+  for (TracerCost& t : device.tracers)
+    if (t.precision == Precision::fast) t.triangle = {}, t.quadric = {};
+  const ObjectStatistics ball{.kind = Object::Kind::quadric, .radius = 1, .thickness = 1, .distance = 10};
+  EXPECT_EQ(plan_tracing(scene_of({ball}), device, half_pixel, false).precision, Precision::fast);
+  EXPECT_NE(plan_tracing(scene_of({ball, far_mesh(12, 1)}), device, half_pixel, false).precision, Precision::fast);
+}
+
 TEST(Plan, EveryChoiceSaysWhy) {
   SceneStatistics scene = scene_of({far_mesh(100000, 0.2), far_mesh(10, 1)});
   scene.objects[0].ball_share = 1;

@@ -184,23 +184,6 @@ TEST(Recognise, FindsTheRoundEndsOfASlot) {
   expect_kept(mesh, found, 0.01);
 }
 
-TEST(MayHoldQuadrics, TellsTessellationsFromFreeForms) {
-  for (const stability::Body& body : stability::bodies())
-    EXPECT_TRUE(body.shape.type == QuadricType::general ||
-                may_hold_quadrics(tessellated(body.shape, 3, stability::turned(1))))
-        << body.name;
-  Mesh free = subdivided_sphere(5);
-  for (glm::dvec3& p : free.positions) p *= 1 + 0.1 * std::sin(7 * p.x) * std::cos(5 * p.y + p.z);
-  EXPECT_FALSE(may_hold_quadrics(free));
-  append(free, sphere(1, {0, 0, 5}));
-  EXPECT_TRUE(may_hold_quadrics(free));
-  EXPECT_FALSE(may_hold_quadrics(Mesh{}));
-  Mesh rough = sphere(1, {0, 0, 0});
-  Random random(6, 6);
-  for (glm::dvec3& p : rough.positions) p += 1e-3 * random.direction();
-  EXPECT_FALSE(may_hold_quadrics(rough));
-}
-
 TEST(Recognise, RefusesTolerancesThatCannotBeKeptAndMeshesThatAreNone) {
   const Mesh mesh = sphere(1, {0, 0, 0}, 1);
   for (const double tolerance : {0., -1., std::nan(""), infinity}) EXPECT_THROW(recognise(mesh, tolerance), Error);

@@ -36,9 +36,4 @@ enum class Pieces { whole, parts };
 /// and on indices out of range.
 Recognition recognise(const Mesh& mesh, double tolerance, Pieces pieces = Pieces::parts);
 
-/// Whether it is worth while to ask recognise(): by a look at some thousand triangles, however many there are. False
-/// for scans, free forms and meshes whose triangles are in no order; true for some free forms too, such as height
-/// fields, whose rows of triangles lie on pairs of planes. Indices must be in range.
-bool may_hold_quadrics(const Mesh& mesh);
-
 }  // namespace rayengine
