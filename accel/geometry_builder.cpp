@@ -3,27 +3,14 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "accel/check_mesh.h"
 #include "accel/geometry.h"
 #include "accel/tracer.h"
 
 namespace rayengine {
 namespace {
 
-bool is_finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 bool is_float(const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)) == p; }
-
-void check(const Mesh& mesh) {
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
-    throw Error("a mesh has " + std::to_string(mesh.normals.size()) + " normals for " +
-                std::to_string(mesh.positions.size()) + " vertices: give one each, or none");
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    if (!is_finite(mesh.positions[i])) throw Error("vertex " + std::to_string(i) + " of a mesh is not finite");
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      if (mesh.triangles[i][k] >= mesh.positions.size())
-        throw Error("triangle " + std::to_string(i) + " of a mesh names vertex " +
-                    std::to_string(mesh.triangles[i][k]) + ", but there are " + std::to_string(mesh.positions.size()));
-}
 
 glm::vec3 world_normal(const WorldToObject& map, const glm::vec3& n) {
   const glm::dvec3 turned = map.normal_to_world(glm::dvec3(n));
@@ -78,7 +65,7 @@ std::uint32_t GeometryBuilder::begin(Object::Kind kind, std::size_t first, std::
 }
 
 std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, const Affine& to_world) {
-  check(mesh);
+  check_mesh(mesh);
   const WorldToObject to_object = inverse(to_world);
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
   const std::uint32_t object = begin(Object::Kind::mesh, geometry_.triangles.size(), material);

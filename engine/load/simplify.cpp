@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/check_mesh.h"
 #include "accel/tracer.h"
 #include "engine/load/cluster.h"
 #include "engine/load/decimate.h"
@@ -17,12 +18,7 @@ void check(const Mesh& mesh, double tolerance) {
   if (!(tolerance > 0 && std::isfinite(tolerance)))
     throw Error("a mesh cannot be simplified to a tolerance of " + std::to_string(tolerance) +
                 ": give a finite number above 0");
-  for (const glm::dvec3& p : mesh.positions)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw Error("a mesh with positions that are not finite cannot be simplified: mend it");
-  for (const glm::uvec3& t : mesh.triangles)
-    if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
-      throw Error("a mesh with triangles of vertices that it does not have cannot be simplified: mend it");
+  check_mesh(mesh);
 }
 
 /// Positions from the mesh's own centre in units of the tolerance: as exact far off as near, and what OpenMesh takes

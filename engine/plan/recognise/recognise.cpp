@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "accel/check_mesh.h"
 #include "accel/tracer.h"
 #include "engine/plan/recognise/caps.h"
 #include "engine/plan/recognise/check.h"
@@ -28,18 +29,10 @@ constexpr std::array angles{50., 20., 7.};
 /// Degrees by which neighbours in one plane may differ, as rounded coordinates make them.
 constexpr double flat = 0.1;
 
-bool is_finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 void check_input(const Mesh& mesh, double tolerance) {
   if (!(tolerance > 0 && std::isfinite(tolerance)))
     throw Error("a tolerance of " + std::to_string(tolerance) + " cannot be kept: give one that is finite and above 0");
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    if (!is_finite(mesh.positions[i])) throw Error("vertex " + std::to_string(i) + " of a mesh is not finite");
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k)
-      if (mesh.triangles[i][k] >= mesh.positions.size())
-        throw Error("triangle " + std::to_string(i) + " of a mesh names vertex " +
-                    std::to_string(mesh.triangles[i][k]) + ", but there are " + std::to_string(mesh.positions.size()));
+  check_mesh(mesh);
 }
 
 /// What a region may be, and the bound if it is.
