@@ -105,10 +105,10 @@ TEST(Simplify, RefusesTolerancesThatAreNone) {
 TEST(Simplify, RefusesBrokenMeshes) {
   Mesh mesh = flat_sheet(2);
   mesh.triangles.push_back({0, 1, 99});
-  expect_error([&] { simplify(mesh, 1); }, "a mesh", "mend it");
+  expect_error([&] { simplify(mesh, 1); }, "a mesh", "names vertex 99");
   mesh = flat_sheet(2);
   mesh.positions[1].x = std::numeric_limits<double>::quiet_NaN();
-  expect_error([&] { simplify(mesh, 1); }, "a mesh", "mend it");
+  expect_error([&] { simplify(mesh, 1); }, "a mesh", "not finite");
 }
 
 TEST(Simplify, LeavesWhatHasNothingToDrop) {
