@@ -84,6 +84,11 @@ std::optional<QuadricType> parse_quadric_type(std::string_view name) {
 
 const QuadricMatrix& unit_matrix(QuadricType type) { return unit_matrices[static_cast<std::size_t>(type)]; }
 
+bool is_ball(const Quadric& q) {
+  const glm::dmat3& m = q.to_object.linear;
+  return q.type == QuadricType::sphere && q.zmin <= -1 && q.zmax >= 1 && m == glm::dmat3(m[0][0]);
+}
+
 Box bounds(const Quadric& q, const GeneralForm* form) {
   const Affine map = object_to_world(q.to_object);
   switch (q.type) {

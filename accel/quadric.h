@@ -63,6 +63,9 @@ struct GeneralForm {
 /// Primitive ids that a quadric takes: its side, and when capped its lower and upper cap.
 inline std::uint32_t primitive_count(const Quadric& q) { return q.capped ? 3 : 1; }
 
+/// Whether it is a whole sphere under one scale for all axes, without any turning.
+bool is_ball(const Quadric& quadric);
+
 /// World-space bounds of the clipped surface; infinite where it is. `form` is needed for `general` alone.
 Box bounds(const Quadric& quadric, const GeneralForm* form);
 

@@ -4,11 +4,7 @@
 
 namespace rayengine {
 
-int kind_of(const Quadric& q) {
-  const glm::dmat3& m = q.to_object.linear;
-  const bool ball = q.type == QuadricType::sphere && q.zmin <= -1 && q.zmax >= 1 && m == glm::dmat3(m[0][0]);
-  return ball ? ball_kind : static_cast<int>(q.type);
-}
+int kind_of(const Quadric& q) { return is_ball(q) ? ball_kind : static_cast<int>(q.type); }
 
 void collect_hit(HitCollector& collector, const HitCollector::Entry& entry) { collector.entries.push_back(entry); }
 

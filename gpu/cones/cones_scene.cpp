@@ -15,7 +15,7 @@ constexpr double ray_slack = 0x1p-18;
 
 struct Entry {
   bool unbounded;
-  KernelType type;
+  std::uint32_t type;
   std::uint32_t rank, id;
 };
 

@@ -11,7 +11,7 @@ SceneTextures every_type(const GpuInfo& gpu) {
   const FlatScene nothing = flatten(GeometryBuilder().build());
   SceneTextures textures = upload(nothing, Treelets{}, gpu);
   textures.types = {TreeletPrimitive::triangle};
-  for (KernelType type = 0; type < quadric_type_count; ++type) textures.types.push_back(type);
+  for (std::uint32_t type = 0; type < quadric_type_count; ++type) textures.types.push_back(type);
   return textures;
 }
 

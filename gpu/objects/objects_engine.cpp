@@ -44,7 +44,7 @@ std::vector<ObjectsEngine::Pass> ObjectsEngine::passes() const {
     else
       result.push_back({0, i, 1});
   for (std::uint32_t i = 0; i < list_.quadrics.size(); ++i) {
-    const auto type = static_cast<KernelType>(scene_.geometry->quadrics[list_.quadrics[i]].type);
+    const auto type = static_cast<std::uint32_t>(scene_.geometry->quadrics[list_.quadrics[i]].type);
     const auto place = std::find(textures_.types.begin(), textures_.types.end(), type) - textures_.types.begin();
     result.push_back({static_cast<std::size_t>(place), i, 1});
   }

@@ -5,6 +5,8 @@
 namespace rayengine {
 namespace {
 
+QuadricType quadric_of(const KernelType& type) { return static_cast<QuadricType>(type.primitive); }
+
 /// The coefficients A, E, H, I, J.
 std::string form_of(QuadricType type) {
   const QuadricMatrix m = unit_matrix(type);
@@ -14,14 +16,15 @@ std::string form_of(QuadricType type) {
 }
 
 /// How it is clipped, whether it may have caps, and whether it is a cone.
-std::string traits_of(QuadricType type) {
-  switch (type) {
+std::string traits_of(const KernelType& kernel) {
+  const std::string planes = kernel.clipped ? "by_planes, " : "never, ", caps = kernel.capped ? "true, " : "false, ";
+  switch (quadric_of(kernel)) {
     case QuadricType::plane: return "never, false, false";
     case QuadricType::disk: return "to_disk, false, false";
     case QuadricType::saddle: return "to_cube, false, false";
-    case QuadricType::sphere: return "by_planes, false, false";
-    case QuadricType::cone: return "by_planes, true, true";
-    default: return "by_planes, true, false";
+    case QuadricType::sphere: return planes + "false, false";
+    case QuadricType::cone: return planes + caps + "true";
+    default: return planes + caps + "false";
   }
 }
 
@@ -29,15 +32,16 @@ std::string traits_of(QuadricType type) {
 
 std::string test_call(KernelType type, const std::string& index) {
   if (type == TreeletPrimitive::triangle) return "test_triangle(" + index + ")";
-  const auto quadric = static_cast<QuadricType>(type);
+  const QuadricType quadric = quadric_of(type);
   if (quadric == QuadricType::general) return "test_general(" + index + ")";
-  return "test_unit(" + index + ", " + form_of(quadric) + ", " + traits_of(quadric) + ")";
+  const std::string test = type.balls ? "test_ball(" : "test_unit(";
+  return test + index + ", " + form_of(quadric) + (type.balls ? "" : ", " + traits_of(type)) + ")";
 }
 
 std::string normal_call(KernelType type, const std::string& index, const std::string& position,
                         const std::string& rank) {
   if (type == TreeletPrimitive::triangle) return "triangle_normal(" + index + ")";
-  const auto quadric = static_cast<QuadricType>(type);
+  const QuadricType quadric = quadric_of(type);
   const std::string arguments = index + ", " + position + ", " + rank;
   if (quadric == QuadricType::general) return "general_normal(" + arguments + ")";
   return "unit_normal(" + arguments + ", " + form_of(quadric) + ")";
@@ -61,7 +65,7 @@ std::string grid_normals(const std::vector<KernelType>& types) {
 }
 
 std::string_view kernel_name(KernelType type) {
-  return type == TreeletPrimitive::triangle ? "triangle" : to_string(static_cast<QuadricType>(type));
+  return type == TreeletPrimitive::triangle ? "triangle" : to_string(quadric_of(type));
 }
 
 Stage kernel_stage(KernelType type, const std::vector<std::string_view>& ray_sources,

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -34,13 +35,19 @@ void append_triangle(std::vector<Texel>& to, const FlatScene& scene, const Local
 }
 
 /// Four texels: the rows of the map from the frame to object space, each with a component of its origin; then the clip
-/// planes, the rank, and the index of a general form or whether there are caps.
-void append_quadric(std::vector<Texel>& to, const FlatScene& scene, const LocalFrame& frame, std::uint32_t quadric) {
+/// planes, the rank, and the index of a general form or whether there are caps. Where all spheres are `balls` theirs
+/// have y and z of the origin in place of the clip planes, so that the kernel reads two texels.
+void append_quadric(std::vector<Texel>& to, const FlatScene& scene, const LocalFrame& frame, bool balls,
+                    std::uint32_t quadric) {
   const Quadric& q = scene.geometry->quadrics[quadric];
   const glm::dmat3 linear = q.to_object.linear / frame.scale;
   const glm::dvec3 origin = (q.to_object.origin - frame.center) * frame.scale;
   for (int row = 0; row < 3; ++row)
     to.push_back({bits(linear[0][row]), bits(linear[1][row]), bits(linear[2][row]), bits(origin[row])});
+  if (balls && q.type == QuadricType::sphere) {
+    to.push_back({bits(origin.y), bits(origin.z), scene.quadric_ranks[quadric], 0});
+    return;
+  }
   const std::uint32_t extra = q.type == QuadricType::general ? q.form : q.capped;
   to.push_back({finite_bits(q.zmin), finite_bits(q.zmax), scene.quadric_ranks[quadric], extra});
 }
@@ -56,13 +63,31 @@ void append_form(std::vector<Texel>& to, const GeneralForm& form) {
   for (std::size_t i = 0; i < 16; i += 4) to.push_back({all[i], all[i + 1], all[i + 2], all[i + 3]});
 }
 
+std::uint32_t type_of(const Quadric& q) { return static_cast<std::uint32_t>(q.type); }
+
 std::vector<KernelType> types_in(const Geometry& g) {
   std::vector<KernelType> types;
   if (!g.triangles.empty()) types.push_back(TreeletPrimitive::triangle);
-  for (KernelType type = 0; type < quadric_type_count; ++type)
-    if (std::any_of(g.quadrics.begin(), g.quadrics.end(), [=](const Quadric& q) { return KernelType(q.type) == type; }))
-      types.push_back(type);
+  std::array<std::optional<KernelType>, quadric_type_count> found;
+  for (const Quadric& q : g.quadrics) {
+    auto& type = found[type_of(q)];
+    if (!type) {
+      type = type_of(q);
+      type->clipped = type->capped = false;
+      type->balls = true;
+    }
+    type->clipped |= !is_ball(q) && (q.zmin > -infinity || q.zmax < infinity);
+    type->capped |= q.capped;
+    type->balls &= is_ball(q);
+  }
+  for (const auto& type : found)
+    if (type) types.push_back(*type);
   return types;
+}
+
+bool all_balls(const std::vector<KernelType>& types) {
+  const auto spheres = std::find(types.begin(), types.end(), static_cast<std::uint32_t>(QuadricType::sphere));
+  return spheres != types.end() && spheres->balls;
 }
 
 /// First primitive and count for every type of every treelet, then of those without bounds, then of none.
@@ -76,9 +101,9 @@ std::vector<std::array<std::uint32_t, 2>> ranges_of(const Geometry& g, const Tre
         ranges.push_back({t.first_triangle, t.triangle_count});
         continue;
       }
-      const auto type_of = [&](std::uint32_t quadric) { return static_cast<KernelType>(g.quadrics[quadric].type); };
-      const auto begin = std::partition_point(first, last, [&](auto q) { return type_of(q) < type; });
-      const auto end = std::partition_point(begin, last, [&](auto q) { return type_of(q) == type; });
+      const auto begin =
+          std::partition_point(first, last, [&](auto q) { return type_of(g.quadrics[q]) < type.primitive; });
+      const auto end = std::partition_point(begin, last, [&](auto q) { return type == type_of(g.quadrics[q]); });
       ranges.push_back(
           {static_cast<std::uint32_t>(begin - treelets.quadrics.begin()), static_cast<std::uint32_t>(end - begin)});
     }
@@ -99,10 +124,11 @@ SceneTextures upload_primitives(const FlatScene& scene, const LocalFrame& frame,
   triangles.reserve(3 * triangle_order.size());
   quadrics.reserve(4 * quadric_order.size());
   for (const std::uint32_t i : triangle_order) append_triangle(triangles, scene, frame, i);
-  for (const std::uint32_t i : quadric_order) append_quadric(quadrics, scene, frame, i);
-  for (const GeneralForm& form : scene.geometry->forms) append_form(forms, form);
   SceneTextures result;
   result.types = types_in(*scene.geometry);
+  const bool balls = all_balls(result.types);
+  for (const std::uint32_t i : quadric_order) append_quadric(quadrics, scene, frame, balls, i);
+  for (const GeneralForm& form : scene.geometry->forms) append_form(forms, form);
   result.triangles = texture_of(GL_RGBA32UI, triangles);
   result.quadrics = texture_of(GL_RGBA32UI, quadrics);
   result.forms = texture_of(GL_RGBA32UI, forms);

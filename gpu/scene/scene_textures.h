@@ -9,8 +9,16 @@
 
 namespace rayengine {
 
-/// A kind of primitive that has an intersection shader of its own: TreeletPrimitive::triangle, or a QuadricType.
-using KernelType = std::uint32_t;
+/// A kind of primitive that has an intersection shader of its own, and what those of the scene need of it.
+struct KernelType {
+  std::uint32_t primitive = 0;  ///< TreeletPrimitive::triangle, or a QuadricType
+  bool clipped = true;          ///< whether any of these quadrics may be, by planes across z
+  bool capped = true;
+  bool balls = false;  ///< whether all of them are is_ball()
+
+  KernelType(std::uint32_t primitive) : primitive(primitive) {}
+  friend bool operator==(const KernelType& type, std::uint32_t primitive) { return type.primitive == primitive; }
+};
 
 /// Primitives that one loop of a shader may test: llvmpipe ends every loop after 65,535 rounds.
 inline constexpr std::uint32_t longest_loop = 1u << 15;

@@ -1,5 +1,6 @@
 // Four texels a quadric: the rows of the map to object space, each with a component of its origin, then clip planes, rank,
-// and the index of a general form, or whether there are caps. After the kernel, and consider().
+// and the index of a general form, or whether there are caps. Where all spheres are whole, round and not turned, the clip
+// planes of theirs make room for the y and z of the origin. After the kernel, and consider().
 layout(binding = 8) uniform usamplerBuffer quadrics;
 layout(binding = 7) uniform usamplerBuffer forms;  // four texels each: the ten coefficients, then the box
 
@@ -102,6 +103,24 @@ bool test_unit(int i, float A, float E, float H, float I, float J, int clip, boo
   if (!(is_cone && zmin == 0)) kept = consider(s + cap(A, E, H, I, J, zmin, p, d), rest.z + 1u) || kept;
   if (!(is_cone && zmax == 0)) kept = consider(s + cap(A, E, H, I, J, zmax, p, d), rest.z + 2u) || kept;
   return kept;
+}
+
+// The same for a sphere that is known to be whole, and under one scale for all axes: of two texels, and by the same numbers
+// as above, where the rest of the map would add zeros.
+bool test_ball(int i, float A, float E, float H, float I, float J) {
+  vec4 row = uintBitsToFloat(texelFetch(quadrics, i));
+  uvec4 rest = texelFetch(quadrics, i + 3);
+  vec3 from = vec3(origin.x - row.w, origin.y - uintBitsToFloat(rest.x), origin.z - uintBitsToFloat(rest.y));
+  precise vec3 o = row.x * from;
+  precise vec3 direction_in_object = row.x * direction;
+  vec3 p;
+  float s;
+  approach(o, direction_in_object, p, s);
+  float a;
+  float b;
+  float c;
+  diagonal_coefficients(A, E, H, I, J, p, direction_in_object, a, b, c);
+  return test_side(a, b, c, p, direction_in_object, s, never, vec3(0), vec3(0), rest.z);
 }
 
 // The same for one that has a form of its own.
