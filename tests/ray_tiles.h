@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "accel/ray_cone.h"
 #include "accel/random.h"
+#include "accel/ray_cone.h"
 
 // Tiles of rays of every kind that a cone may have to hold, and whether it does, with 113 bits.
 namespace rayengine::test {

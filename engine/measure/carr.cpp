@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "accel/random.h"
 #include "accel/stopwatch.h"
 #include "accel/walk.h"
-#include "accel/random.h"
 #include "engine/measure/rays.h"
 #include "engine/query.h"
 #include "engine/tracers.h"

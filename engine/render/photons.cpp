@@ -8,8 +8,8 @@
 #include <iterator>
 #include <numbers>
 
-#include "accel/ray_cone.h"
 #include "accel/random.h"
+#include "accel/ray_cone.h"
 #include "engine/query.h"
 #include "engine/render/departure.h"
 #include "engine/render/scatter.h"

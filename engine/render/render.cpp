@@ -87,7 +87,8 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
   const CameraFrame camera(scene.camera);
   const Environment environment(scene.background);
   const std::vector<Material> materials = materials_for(options.shading, scene.materials);
-  Picture picture{*scene.geometry, scene.lights, materials, environment, tracer.limits(), options.depth, nullptr, scene.object_numbers};
+  Picture picture{*scene.geometry, scene.lights,  materials, environment,
+                  tracer.limits(), options.depth, nullptr,   scene.object_numbers};
   const PixelSampler sampler(options.spp);
   RenderResult result{Image(scene.camera.size.x, scene.camera.size.y, channels_for(options)), {}};
 

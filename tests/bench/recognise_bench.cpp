@@ -58,8 +58,8 @@ void run(const std::string& file) {
   const Mesh mesh = one_mesh(*scene.geometry);
   const double before = processor_seconds();
   const double embree = embree_seconds(mesh), processor = processor_seconds() - before;
-  std::printf("%s: %zu triangles; Embree %.3f s (processor %.3f s)\n", file.c_str(),
-              mesh.triangles.size(), embree, processor);
+  std::printf("%s: %zu triangles; Embree %.3f s (processor %.3f s)\n", file.c_str(), mesh.triangles.size(), embree,
+              processor);
   const double diagonal = glm::length(scene.geometry->bounds.size());
   for (const double share : {1e-4, 1e-3, 1e-2}) report(mesh, share, share * diagonal);
 }

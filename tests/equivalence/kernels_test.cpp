@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "accel/geometry.h"
+#include "accel/random.h"
 #include "cpu/reference/quadric.h"
 #include "cpu/reference/triangle.h"
-#include "accel/random.h"
 
 namespace rayengine {
 namespace {

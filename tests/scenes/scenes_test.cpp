@@ -161,9 +161,10 @@ TEST_P(Scenes, KeepToATolerance) {
   const std::vector<Ray> rays = random_camera_rays(scene.camera, 2000);
   for (const double pixels : {0., 0.1, 1.}) {
     const Tolerance tolerance{pixels};
-    const Planned planned = plan_scene(
-        scene,
-        {.tolerance = tolerance, .rays = expected_rays(scene, 1), .effort = {true, true}, .simplifier = cached_simplifier()});
+    const Planned planned = plan_scene(scene, {.tolerance = tolerance,
+                                               .rays = expected_rays(scene, 1),
+                                               .effort = {true, true},
+                                               .simplifier = cached_simplifier()});
     const Scene& model = planned.model.scene;
     const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
     const Verification found = verify(scene, model, *tracer, tolerance, rays);

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "accel/random.h"
 #include "cpu/bvh_tracer.h"
 #include "cpu/embree_tracer.h"
-#include "accel/random.h"
 #include "engine/measure/rays.h"
 
 namespace rayengine {

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "accel/kernels/kernels.h"
+#include "accel/random.h"
 #include "accel/tracer.h"
 #include "accel/voxel_overlap.h"
 #include "cpu/reference_tracer.h"
-#include "accel/random.h"
 #include "engine/measure/rays.h"
 #include "gpu/scene/frame_ray.h"
 

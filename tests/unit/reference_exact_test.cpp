@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cpu/reference_tracer.h"
 #include "accel/random.h"
+#include "cpu/reference_tracer.h"
 #include "tests/unit/exact_world.h"
 
 namespace rayengine {
