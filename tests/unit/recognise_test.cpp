@@ -57,21 +57,26 @@ TEST(Recognise, FindsManySpheresInOneMeshWhateverTheNumberOfThreads) {
   }
 }
 
+/// All but the ellipsoid that a slanted box cuts, which stays triangles.
+std::vector<stability::Body> recognisable_bodies() {
+  std::vector<stability::Body> bodies;
+  for (const stability::Body& body : stability::bodies())
+    if (body.shape.type != QuadricType::general) bodies.push_back(body);
+  return bodies;
+}
+
 class RecogniseBody : public testing::TestWithParam<stability::Body> {};
-INSTANTIATE_TEST_SUITE_P(Bodies, RecogniseBody,
-                         testing::ValuesIn(stability::bodies().begin(), stability::bodies().end()),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::erase_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Bodies, RecogniseBody, testing::ValuesIn(recognisable_bodies()), [](const auto& info) {
+  std::string name = info.param.name;
+  std::erase_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
+  return name;
+});
 
 /// Quadrics that are expected of one body's tessellation: each sheet of a hyperboloid is one of its own.
 std::size_t pieces(const QuadricShape& shape) { return shape.type == QuadricType::hyperboloid2 ? 2 : 1; }
 
 TEST_P(RecogniseBody, IsFoundInAnyPoseAndKeepsItsPromise) {
   const QuadricShape& shape = GetParam().shape;
-  if (shape.type == QuadricType::general) GTEST_SKIP() << "an ellipsoid cut by a slanted box stays triangles";
   for (int i = 0; i < 8; ++i) {
     Random random(4, i);
     const Affine pose = Affine::translate(random.between(0, 10) * random.direction()) * stability::turned(i) *
