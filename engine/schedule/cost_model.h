@@ -14,6 +14,8 @@ class CostModel {
   void add(std::size_t rays, double seconds, bool waited = false);
 
   bool known() const { return samples_ > 0; }
+  /// Whether the latency is told from the rate, for which it takes two batches.
+  bool settled() const { return samples_ > 1; }
   double latency() const { return latency_; }
   double per_ray() const { return per_ray_; }
   double predict(std::size_t rays) const { return latency_ + per_ray_ * static_cast<double>(rays); }

@@ -10,8 +10,8 @@ namespace {
 constexpr double forever = std::numeric_limits<double>::infinity();
 constexpr double percentile_99 = 2.33;  // standard deviations
 constexpr double hidden_latency = 9;    // a batch is large enough when it works so many times as long as it waits
-constexpr double first_share = 0.45;    // of the pool, sent to a lane before it answers
-constexpr double first_walk = 0.05;     // of the processor's time for the pool, spent on sending that
+constexpr double first_share = 0.15;    // of the pool, in each batch sent to a lane before it answers
+constexpr double first_walk = 0.05;     // of the processor's time for the pool, spent on sending those
 
 /// Seconds from now until the lane would begin with a batch handed over now.
 double start(const Lane& lane, double now) { return std::max(lane.model.latency(), ready(lane, now) - now); }
@@ -81,10 +81,11 @@ std::size_t first_batch(const Situation& s, const Lane& lane) {
   double sent = 0;
   for (const Flight& flight : lane.flights) sent += static_cast<double>(flight.rays);
   const double pool = static_cast<double>(s.remaining) + sent;
-  double affordable = pool * first_share;
-  if (lane.walk > 0) affordable = std::min(affordable, first_walk * pool * s.crew.model.per_ray() / lane.walk);
   const double slots = static_cast<double>(lane.depth - lane.flights.size());
-  const std::size_t rays = std::min({rays_of((affordable - sent) / slots), s.remaining, lane.largest});
+  double affordable = pool * first_share;
+  if (lane.walk > 0)
+    affordable = std::min(affordable, (first_walk * pool * s.crew.model.per_ray() / lane.walk - sent) / slots);
+  const std::size_t rays = std::min({rays_of(affordable), s.remaining, lane.largest});
   return rays >= lane.smallest ? rays : lane.flights.empty() ? std::min(lane.smallest, s.remaining) : 0;
 }
 
@@ -121,14 +122,16 @@ std::optional<Again> last_flight(const Situation& s, std::size_t taker, const Se
 
 double largest(const Lane& lane) { return static_cast<double>(lane.largest); }
 
-/// Into how many batches a lane's share of the next `seconds` is cut: one for each place in the lane that is free, or
-/// will be in time for another batch, and two at least unless they would be too small.
-std::size_t parts(const Lane& lane, double share, double now, double seconds) {
+/// Into how many batches a lane's share is cut: one for each place in the lane that is free, or will be so early that
+/// the lane does not run dry by waiting; and two at least unless they would be too small. What may be latency is not
+/// waited for once more: until it is told from the rate, only places that are free count.
+std::size_t parts(const Lane& lane, double share, double now) {
   std::size_t places = lane.depth - lane.flights.size();
+  if (!lane.model.settled()) return places;
+  const double work = share * lane.model.per_ray(), begin = now + start(lane, now);
   for (std::size_t f = 0; f < lane.flights.size(); ++f)
-    places += forecast(lane, f).finish + lane.model.latency() < now + seconds;
-  const bool large = share * lane.model.per_ray() > 2 * hidden_latency * lane.model.latency();
-  return places == 1 && large ? 2 : places;
+    places += forecast(lane, f).finish + lane.model.latency() < begin + work / static_cast<double>(places + 1);
+  return places == 1 && work > 2 * hidden_latency * lane.model.latency() ? 2 : places;
 }
 
 }  // namespace
@@ -169,7 +172,7 @@ std::size_t lane_batch(const Situation& s, std::size_t index) {
   const double most =
       (seconds - lane.model.latency()) / (lane.model.per_ray() + lane.walk / static_cast<double>(s.crew.threads));
   const double share = std::min({shares[index], static_cast<double>(s.remaining), most});
-  const double wanted = share / static_cast<double>(parts(lane, share, s.now, seconds));
+  const double wanted = share / static_cast<double>(parts(lane, share, s.now));
   return rays_of(std::min({std::max(wanted, static_cast<double>(lane.smallest)), share, largest(lane)}));
 }
 

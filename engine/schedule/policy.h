@@ -63,11 +63,11 @@ double ready(const Lane& lane, double now);
 double drain(const Situation& s);
 
 /// Rays to hand to a lane now; 0 when it must wait, or could not be done before the others have finished the pool (so
-/// that they overflow to the processor). Batches are half of the lane's share of what remains, and so shrink towards
-/// the end; but large enough to hide the latency.
+/// that they overflow to the processor). The lane's share of what remains is cut into batches for the places that it
+/// has, and so they shrink towards the end; but no smaller than what hides the latency.
 ///
-/// A lane of which less than two batches are known gets more without waiting for answers, each larger than the one
-/// before, up to a quarter of the pool and then half of it: its latency passes once, not once for each question.
+/// A lane that has never answered gets as many batches as it has places for, each a fixed part of the pool: its latency
+/// passes once, not once for each question, and what is lost with one batch that comes back too late is bounded.
 std::size_t lane_batch(const Situation& s, std::size_t lane);
 
 /// Rays for a thread of the processor; 0 when the lanes will be done before it could be.

@@ -14,7 +14,7 @@ constexpr double forever = std::numeric_limits<double>::infinity();
 constexpr std::array ratios = {0.001, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1000.0};
 constexpr std::array latencies = {0.0, 1e-4, 1e-3, 3e-3, 1e-2};
 constexpr std::array<std::size_t, 2> pools = {1'000'000, 10'000'000};
-constexpr std::uint64_t seeds = 5;
+constexpr std::uint64_t seeds = 25;
 
 MadeGpu gpu(double ratio, double latency) { return {.latency = latency, .per_ray = per_ray / ratio, .noise = noise}; }
 
@@ -68,7 +68,7 @@ std::vector<SimulatedCase> simulated_cases() {
   add_fault(cases, "never answers", noise, {{0, 0}});
   add_fault(cases, "breaks after 50 ms", noise, {}, 0.05);
   cases.push_back(make("faults", "GPUs of 3 and 10", 13, 1e-3, pools.back(), {gpu(3, 1e-3), gpu(10, 1e-3)}));
-  cases.push_back(make("faults", "GPUs of 0.1, 1, 3 and 10", 14.1, 1e-3, pools.back(),
+  cases.push_back(make("faults", "four GPUs of 0.1 to 10", 14.1, 1e-3, pools.back(),
                        {gpu(0.1, 0), gpu(1, 1e-3), gpu(3, 3e-3), gpu(10, 1e-3)}));
   return cases;
 }

@@ -212,6 +212,21 @@ TEST(Policy, AnUnknownLaneCostsLittleSending) {
   EXPECT_LE(static_cast<double>(sent) * 1e-7, 0.06 * 1e6 * 2e-7);
 }
 
+/// What may be latency must not be waited for twice: after one answer the lane's share goes out as a whole.
+TEST(Policy, ALaneThatAnsweredOnceGetsItsShareInOneBatch) {
+  const Crew crew = crew_of(2e-7, 2);
+  Lane lane;
+  lane.model.add(150'000, 11.5e-3);
+  lane.flights = {{150'000, 150'000, 0}, {150'000, 150'000, 0}};
+  lane.last_landing = 11.5e-3;
+  const auto batch = [&] { return lane_batch({11.5e-3, 430'000, crew, {&lane, 1}}, 0); };
+  const std::size_t whole = batch();
+  EXPECT_GT(whole, 90'000u);
+  // Known to be work and no latency: half of the share now, the rest when there is a place again.
+  lane.model.add(150'000, 11.5e-3, true);
+  EXPECT_LT(batch(), 0.6 * static_cast<double>(whole));
+}
+
 TEST(Policy, ThreadsTakeNoMoreThanHalfOfWhatIsLeftForThem) {
   const Crew crew = crew_of(2e-7, 2);
   EXPECT_EQ(crew_batch({0, 10'000'000, crew, {}}), crew.largest);

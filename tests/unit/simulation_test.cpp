@@ -21,30 +21,25 @@ std::vector<SimulatedRow> rows_of(const std::string& group) {
   return rows;
 }
 
-/// A hundredth is the luck of a few noisy batches: at 1:1 an even split is the best there is.
+/// A thousandth is the luck of noisy batches: at 1:1 an even split is the best there is.
 void expect_ahead(const SimulatedRow& row) {
-  for (const double other : {row.even, row.cycles, row.fewest}) EXPECT_GE(row.ours, 0.99 * other) << label(row.subject);
+  for (const double other : {row.even, row.cycles, row.fewest})
+    EXPECT_GE(row.ours, 0.999 * other) << label(row.subject);
 }
 
-TEST(Simulation, ComesCloseToTheOracleAtEveryRateAndLatency) {
-  const auto rows = rows_of("rates");
+/// The goals: 0.95 of the oracle's rate at 10 million rays and 0.85 from the first million.
+void expect_close(const std::string& group) {
+  const auto rows = rows_of(group);
   ASSERT_EQ(rows.size(), 90u);
-  int below = 0;
   for (const SimulatedRow& row : rows) {
-    const bool large = row.subject.rays >= 10'000'000;
-    EXPECT_GE(row.ours, large ? 0.95 : 0.80) << label(row.subject);
-    below += !large && row.ours < 0.85;
+    EXPECT_GE(row.ours, row.subject.rays >= 10'000'000 ? 0.95 : 0.85) << label(row.subject);
     expect_ahead(row);
   }
-  EXPECT_LE(below, 1);  // ten times the rate after 10 ms of silence: docs/scheduler.md says why
 }
 
-TEST(Simulation, PaysForSendingAndComesClose) {
-  for (const SimulatedRow& row : rows_of("walk")) {
-    EXPECT_GE(row.ours, row.subject.rays >= 10'000'000 ? 0.95 : 0.80) << label(row.subject);
-    EXPECT_GE(row.ours, 0.97 * std::max({row.even, row.cycles, row.fewest})) << label(row.subject);
-  }
-}
+TEST(Simulation, ComesCloseToTheOracleAtEveryRateAndLatency) { expect_close("rates"); }
+
+TEST(Simulation, PaysForSendingAndComesClose) { expect_close("walk"); }
 
 TEST(Simulation, LosesLittleToFaults) {
   for (const SimulatedRow& row : rows_of("faults")) {
