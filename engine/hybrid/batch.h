@@ -19,7 +19,7 @@ class Batch {
 
   /// Takes `count` rays of the job from `first` on; they must be the taker's own.
   void add(std::shared_ptr<Job> job, std::size_t first, std::size_t count);
-  /// Copies the rays, and makes room.
+  /// Copies the rays, and makes room. Where there is no memory for that its jobs fail, and it throws.
   void stage();
 
   WorkKind kind() const { return kind_; }
@@ -33,6 +33,8 @@ class Batch {
   /// Writes the answers of these blocks to their jobs, but for blocks that are answered; `answers` begin with the first
   /// of them. Returns the number of rays answered thereby.
   std::size_t deliver(std::size_t first, std::size_t last, const Answers& answers);
+  /// Fails their jobs instead, but for blocks that are answered.
+  void fail(std::size_t first, std::size_t last, const std::exception_ptr& error);
 
  private:
   /// Rays at `at` in the batch are the job's from `first` on.
@@ -42,6 +44,8 @@ class Batch {
   };
 
   bool claim(std::size_t block);
+  template <class Use>
+  void each_piece(std::size_t first, std::size_t last, const Use& use);
   void write(std::size_t first, std::size_t last, const Answers& answers);
 
   WorkKind kind_;

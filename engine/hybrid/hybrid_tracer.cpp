@@ -52,6 +52,8 @@ class HybridTracer : public Hybrid {
   void answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays, const Answers& answers);
   bool crew(RayPool& pool, const Job& job);
   void work(RayPool& pool, const CrewWork& work);
+  std::size_t trace_own(const CrewWork& work);
+  std::size_t trace_gpus(const CrewWork& work);
   void look_at_clock(const RayPool& pool);
 
   void start_feeders();
@@ -139,6 +141,7 @@ void HybridTracer::answer_together(RayPool& pool, WorkKind kind, std::span<const
       look_at_clock(pool);
     }
   pool.leave(*job);
+  job->rethrow();
 }
 
 /// Whether there was anything to do.
@@ -150,20 +153,37 @@ bool HybridTracer::crew(RayPool& pool, const Job& job) {
       any = true;
     }
   };
-  if (job.rays.size() <= one_thread_rays)
+  if (job.rays.size() <= one_thread_rays) {
     one(0);
-  else
-    tbb::parallel_for(std::size_t{0}, threads_, one, tbb::simple_partitioner());
+    return any;
+  }
+  // Even if the caller's own loop is cancelled meanwhile: what it asked for must be answered before it may go.
+  tbb::task_group_context whatever_happens(tbb::task_group_context::isolated);
+  tbb::parallel_for(std::size_t{0}, threads_, one, tbb::simple_partitioner(), whatever_happens);
   return any;
 }
 
+/// Rays that cannot be traced are failures of those who asked for them, not of the thread that happens to have them.
 void HybridTracer::work(RayPool& pool, const CrewWork& work) {
-  if (work.job) {
-    trace(*cpu_, work.kind, work.job->rays.subspan(work.first, work.rays),
-          work.job->answers.part(work.first, work.rays));
-    work.job->answered.fetch_add(work.rays, std::memory_order_release);
-    return pool.crew_done(work, work.rays);
+  std::size_t answered = 0;
+  try {
+    answered = work.job ? trace_own(work) : trace_gpus(work);
+  } catch (...) {
+    work.job ? work.job->fail(work.rays, std::current_exception())
+             : work.batch->fail(work.first, work.last, std::current_exception());
   }
+  pool.crew_done(work, answered);
+}
+
+/// Returns the number of rays answered.
+std::size_t HybridTracer::trace_own(const CrewWork& work) {
+  trace(*cpu_, work.kind, work.job->rays.subspan(work.first, work.rays), work.job->answers.part(work.first, work.rays));
+  work.job->answered.fetch_add(work.rays, std::memory_order_release);
+  return work.rays;
+}
+
+/// The same for rays that the GPU has too.
+std::size_t HybridTracer::trace_gpus(const CrewWork& work) {
   thread_local std::vector<Hit> hits;
   thread_local std::vector<std::uint32_t> status;
   work.kind.any ? status.resize(work.rays) : hits.resize(work.rays);
@@ -171,7 +191,7 @@ void HybridTracer::work(RayPool& pool, const CrewWork& work) {
   work.kind.any ? void(room.status = std::span(status).first(work.rays))
                 : void(room.hits = std::span(hits).first(work.rays));
   trace(*cpu_, work.kind, work.batch->rays().subspan(work.batch->rays_before(work.first), work.rays), room);
-  pool.crew_done(work, work.batch->deliver(work.first, work.last, room));
+  return work.batch->deliver(work.first, work.last, room);
 }
 
 void HybridTracer::look_at_clock(const RayPool& pool) {

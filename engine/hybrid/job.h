@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <span>
 
 #include "accel/tracer.h"
@@ -44,11 +45,25 @@ struct Job {
   const WorkKind kind;
   const std::span<const Ray> rays;
   const Answers answers;
-  std::size_t front = 0, back;  ///< rays between them are nobody's; the processor takes from the front
-  std::atomic<std::size_t> answered = 0;
+  std::size_t front = 0, back;            ///< rays between them are nobody's; the processor takes from the front
+  std::atomic<std::size_t> answered = 0;  ///< or failed
+
+  /// Instead of answers for `count` of its rays. The caller gets the first such error, once nobody has its rays.
+  void fail(std::size_t count, const std::exception_ptr& error) {
+    if (!failed_.exchange(true)) error_ = error;
+    answered.fetch_add(count, std::memory_order_release);
+  }
+  /// Of a job that is done.
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
 
   std::size_t fresh() const { return back - front; }
   bool done() const { return answered.load(std::memory_order_acquire) == rays.size(); }
+
+ private:
+  std::atomic<bool> failed_ = false;
+  std::exception_ptr error_;
 };
 
 }  // namespace rayengine

@@ -132,9 +132,10 @@ Context::Context(int device) {
 Context::~Context() = default;
 
 void Context::check_errors(const char* during) {
-  const GLenum lost = glGetGraphicsResetStatus();
-  const GLenum error = lost != GL_NO_ERROR ? GLenum{GL_CONTEXT_LOST} : glGetError();
-  while (lost == GL_NO_ERROR && glGetError() != GL_NO_ERROR) {
+  // Without its context the thread's calls do nothing, and report nothing.
+  const bool lost = eglGetCurrentContext() != egl_->context || glGetGraphicsResetStatus() != GL_NO_ERROR;
+  const GLenum error = lost ? GLenum{GL_CONTEXT_LOST} : glGetError();
+  while (!lost && glGetError() != GL_NO_ERROR) {
   }
   if (error == GL_NO_ERROR && reported_.empty()) return;
   const std::string detail = reported_.empty() ? "" : ": " + std::exchange(reported_, {});

@@ -9,9 +9,12 @@
 #include "gpu/objects/objects_tracer.h"
 #include "gpu/scene/scene_textures.h"
 #include "gpu/stream/stream_tracer.h"
+#include "tests/gpu/instead.h"
 
 namespace rayengine {
 namespace {
+
+using test::Instead;
 
 std::shared_ptr<const Geometry> sphere() {
   GeometryBuilder builder;
@@ -35,18 +38,6 @@ std::string complaint(const Work& work) {
 }
 
 bool says(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
-
-/// Puts another function in a variable until the end of the scope.
-template <class Function>
-class Instead {
- public:
-  Instead(Function& variable, Function other) : variable_(variable), old_(std::exchange(variable, other)) {}
-  ~Instead() { variable_ = old_; }
-
- private:
-  Function& variable_;
-  Function old_;
-};
 
 using MakeTracer = std::unique_ptr<Tracer> (*)();
 class LostDevice : public testing::TestWithParam<MakeTracer> {

@@ -26,7 +26,7 @@ std::shared_ptr<const Geometry> balls() {
 
 /// A hybrid over a paced processor and a paced GPU, what it said, and the GPU.
 struct Rig {
-  explicit Rig(Fault fault = {}, double latency = 0, double patience = 0) {
+  explicit Rig(Fault fault = {}, double latency = 0, double patience = 0, Fault cpu_fault = {}) {
     const HybridOptions options{.threads = threads, .patience = patience, .say = [this](const std::string& text) {
                                   const std::lock_guard lock(mutex);
                                   said.push_back(text);
@@ -36,7 +36,8 @@ struct Rig {
       gpu = made.get();
       return made;
     };
-    hybrid = make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true), make_gpu, options);
+    hybrid =
+        make_hybrid_tracer(std::make_unique<PacedTracer>(geometry, 0, cpu_per_ray, true, cpu_fault), make_gpu, options);
   }
 
   std::mutex mutex;
@@ -235,6 +236,53 @@ TEST(HybridFault, ManyCallersGetTheirAnswers) {
     callers.clear();
     EXPECT_EQ(wrong, 0);
     EXPECT_GT(rig.gpu.load()->batches(), fault.batch);
+  }
+}
+
+/// Once the processor's tracer throws: one query fails, whoever of the callers had its rays, and no other.
+TEST(HybridFault, AnErrorOfTheProcessorIsThatOfOneQuery) {
+  constexpr std::size_t count = 3000;
+  Rig rig({}, 0, 0, {Fault::Kind::error, 9});
+  const std::vector<Ray> rays = random_rays(rig.geometry->bounds, count);
+  std::vector<Hit> right(count);
+  make_embree_tracer(rig.geometry, Precision::robust)->closest(rays, right, RayClass::bounce);
+  std::atomic<int> wrong = 0, failed = 0;
+  std::vector<std::jthread> callers;
+  for (int c = 0; c < 4; ++c)
+    callers.emplace_back([&] {
+      for (int query = 0; query < 20; ++query) {
+        std::vector<Hit> hits(count);
+        try {
+          rig.hybrid->closest(rays, hits, RayClass::bounce);
+          for (std::size_t i = 0; i < count; ++i) wrong += !same(hits[i], right[i]);
+        } catch (const Error&) {
+          ++failed;
+        }
+      }
+    });
+  callers.clear();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(failed, 1);
+  EXPECT_TRUE(rig.said.empty());
+}
+
+TEST(HybridFault, AnErrorOfTheProcessorLeavesThePoolUsable) {
+  Rig rig({}, 0, 0, {Fault::Kind::error, 3});
+  std::vector<Hit> hits(75'000);
+  EXPECT_THROW(rig.hybrid->closest(random_rays(rig.geometry->bounds, hits.size()), hits, RayClass::primary), Error);
+  for (int i = 0; i < 2; ++i) expect_right(rig, 75'000);
+}
+
+/// The error cancels the other tiles' loops, whose queries are under way.
+TEST(HybridFault, AnErrorOfTheProcessorEndsAPicture) {
+  Scene scene;
+  scene.geometry = balls();
+  scene.materials = {{.reflect = 0.4f}};
+  scene.lights = {point_light({10, -10, 20})};
+  scene.camera = {.from = {3, -14, 8}, .at = {3, 3, 3}, .up = {0, 0, 1}, .fov = 45, .size = {240, 180}};
+  for (const int batch : {0, 7, 25}) {
+    Rig rig({}, 0, 0, {Fault::Kind::lost, batch});
+    EXPECT_THROW(render(scene, *rig.hybrid, {.depth = 3, .threads = threads}), Error) << batch;
   }
 }
 
