@@ -1,5 +1,6 @@
 #include "engine/load/complete.h"
 #include "engine/load/image_io.h"
+#include "engine/load/json_camera.h"
 #include "engine/load/json_objects.h"
 #include "engine/load/json_view.h"
 #include "engine/load/load.h"
@@ -18,15 +19,11 @@ glm::ivec2 read_size(const JsonView& value) {
 /// True when it says where the camera stands or looks; else the scene is to be framed.
 bool read_camera(const JsonView& value, Camera& camera) {
   JsonFields fields(value);
-  const auto from = fields.find("from"), at = fields.find("at");
-  if (from) camera.from = from->vector();
-  if (at) camera.at = at->vector();
-  fields.read("up", camera.up, &JsonView::vector);
-  fields.read("fov", camera.fov, &JsonView::number);
+  const bool posed = read_pose(fields, camera);
   fields.read("size", camera.size, read_size);
   fields.finish();
   at_place(value.place(), [&] { check(camera); });
-  return from || at;
+  return posed;
 }
 
 Background read_background(const JsonView& value, const std::filesystem::path& folder) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/camera_path.h"
 
 // The loader and image module: needs OpenMesh, tinygltf, nlohmann-json and OpenImageIO, which the core does not.
 namespace rayengine {
@@ -18,6 +18,11 @@ Scene load_scene(const std::filesystem::path& file);
 Scene load_json(const std::filesystem::path& file);
 Scene load_nff(const std::filesystem::path& file);
 Scene load_gltf(const std::filesystem::path& file);
+
+/// Reads the keys of a camera's path: a JSON list of objects with `from`, `at`, `up` and `fov` as in a scene file's
+/// camera, each what the key before has (the first, what `start` has) unless given, and `time`, one more than that of
+/// the key before unless given. Throws Error with file:line, as for times that do not rise or fewer than two keys.
+std::vector<CameraKey> load_camera_path(const std::filesystem::path& file, const Camera& start);
 
 /// A mesh in file order: one triangle per face of three, fans for polygons, degenerate and non-manifold faces kept and
 /// counted in `notes`. Positions keep the precision of the file.

@@ -6,6 +6,7 @@
 
 #include "accel/stopwatch.h"
 #include "accel/transform.h"
+#include "engine/render/camera.h"
 
 namespace rayengine {
 namespace {
@@ -34,28 +35,39 @@ class Starter {
   std::atomic<bool> gone_ = false;
 };
 
-}  // namespace
-
-Camera turntable(const Camera& camera, int frame, int frames) {
-  if (frame == 0) return camera;
-  Camera turned = camera;
-  turned.from = camera.at + Affine::rotate(camera.up, 360.0 * frame / frames).vector(camera.from - camera.at);
-  return turned;
+void check(std::span<const Camera> cameras) {
+  for (std::size_t frame = 0; frame < cameras.size(); ++frame) try {
+      CameraFrame{cameras[frame]};
+    } catch (const Error& error) {
+      throw Error("in frame " + std::to_string(frame) + ", " + error.what());
+    }
 }
 
-RenderStats render_turn(const Scene& scene, Tracer& tracer, const RenderOptions& options, int frames,
-                        const FrameDone& done) {
+}  // namespace
+
+std::vector<Camera> turntable(const Camera& camera, int frames) {
+  std::vector<Camera> cameras(static_cast<std::size_t>(frames), camera);
+  for (int frame = 1; frame < frames; ++frame)
+    cameras[static_cast<std::size_t>(frame)].from =
+        camera.at + Affine::rotate(camera.up, 360.0 * frame / frames).vector(camera.from - camera.at);
+  return cameras;
+}
+
+RenderStats render_frames(const Scene& scene, std::span<const Camera> cameras, Tracer& tracer,
+                          const RenderOptions& options, const FrameDone& done) {
+  check(cameras);
+  const int frames = static_cast<int>(cameras.size());
   const Stopwatch watch;
   RenderStats sum;
   const auto render_frame = [&](int frame, Starter& next) {
-    Scene turned = scene;
-    turned.camera = turntable(scene.camera, frame, frames);
+    Scene seen = scene;
+    seen.camera = cameras[static_cast<std::size_t>(frame)];
     RenderOptions here = options;
     here.progress = [&](double share) {
       if (share >= nearly_done) next.go();
       if (options.progress) options.progress((frame + share) / frames);
     };
-    return render(turned, tracer, here);
+    return render(seen, tracer, here);
   };
   std::atomic<bool> failed = false;
   std::future<void> last;

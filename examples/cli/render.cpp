@@ -10,6 +10,7 @@
 #include "accel/stopwatch.h"
 #include "engine/load/atomic_file.h"
 #include "engine/load/image_io.h"
+#include "engine/load/load.h"
 #include "engine/render/animation.h"
 #include "engine/tracers.h"
 #include "examples/cli/cli.h"
@@ -29,7 +30,7 @@ constexpr const char* ray_kinds[] = {"primary", "shadow", "reflected", "refracte
 
 struct Options {
   Common common;
-  fs::path scene, output, stats;
+  fs::path scene, output, stats, path;
   std::optional<glm::ivec2> size;
   std::string tracer = "auto";
   std::optional<Precision> precision;
@@ -78,6 +79,9 @@ void check(Options& o) {
   check_output(o.output);
   if (!o.stats.empty()) check_output(o.stats);
   if (o.size) check_size(*o.size, 4);
+  if (!o.path.empty() && o.frames == 1)
+    throw CLI::ValidationError("--path",
+                               "says where the camera goes from picture to picture: give --frames, 2 or more");
   if (o.planning.tolerance && o.frames > 1)
     throw CLI::ValidationError("--tolerance", "a plan is for one camera: render frames without");
   if (o.render.caustics > 0 && o.render.shading == Shading::direct)
@@ -150,8 +154,13 @@ double write(const Options& o, const fs::path& file, const Image& image) {
   return watch.seconds();
 }
 
+std::vector<Camera> cameras_of(const Options& o, const Camera& camera) {
+  return o.path.empty() ? turntable(camera, o.frames) : camera_path(load_camera_path(o.path, camera), o.frames);
+}
+
 /// Renders and writes; returns what was done, with the seconds for writing.
-std::pair<RenderStats, double> make_pictures(const Options& o, const Scene& scene, Tracer& tracer) {
+std::pair<RenderStats, double> make_pictures(const Options& o, const Scene& scene, std::span<const Camera> cameras,
+                                             Tracer& tracer) {
   double writing = 0;
   const FrameDone done = [&](int frame, RenderResult& result) {
     writing += write(o, frame_file(o, frame), result.image);
@@ -160,7 +169,7 @@ std::pair<RenderStats, double> make_pictures(const Options& o, const Scene& scen
   RenderOptions options = o.render;
   options.threads = o.common.threads;
   options.progress = [&](double share) { progress.update(share); };
-  if (o.frames > 1) return {render_turn(scene, tracer, options, o.frames, done), writing};
+  if (o.frames > 1) return {render_frames(scene, cameras, tracer, options, done), writing};
   RenderResult result = render(scene, tracer, options);
   done(0, result);
   return {result.stats, writing};
@@ -172,11 +181,12 @@ int run(Options& o) {
   LoadedScene loaded = load(o.scene, o.common);
   if (o.size) loaded.scene.camera.size = *o.size;
   check_size(loaded.scene.camera.size, 4 + 3 * o.render.aovs.size());
+  const std::vector<Camera> cameras = cameras_of(o, loaded.scene.camera);
   const double expected = expected_rays(loaded.scene, o.render.spp);
   const PlannedScene planned(o.planning, std::move(loaded.scene), expected, true, o.common);
   const Scene& scene = planned.scene();
   const MadeTracer made = planned.make_tracer(o.tracer, o.precision);
-  const auto [stats, writing] = make_pictures(o, scene, *made.tracer);
+  const auto [stats, writing] = make_pictures(o, scene, cameras, *made.tracer);
   const Seconds seconds{loaded.seconds, made.tracer->build_seconds(), stats.seconds, writing};
   Json plan = planned.json();
   if (o.planning.verify > 0)
@@ -197,7 +207,8 @@ void add_picture_options(CLI::App* app, Options& o) {
       ->type_name("full|direct")
       ->default_str("full");
   add_count(app, "--frames", o.frames, {1, 100000},
-            "Pictures of a turn of the camera about what it looks at, as IMAGE.0000.png and so on");
+            "Pictures of a turn of the camera about what it looks at, or along --path, as IMAGE.0000.png and so on");
+  app->add_option("--path", o.path, "JSON file of cameras that --frames leads smoothly through")->type_name("FILE");
   app->add_flag("--linear", o.linear, "Write values as they are, without the sRGB curve");
   app->add_option_function<std::string>(
          "--aov",
@@ -216,6 +227,7 @@ void add_render(CLI::App& app, Action& action) {
       add_subcommand(app, "render", "Render a scene to an image (without SCENE: scenes/sphereflake.json)",
                      "  rayengine render scenes/glass.json -o glass.png\n"
                      "  rayengine render bunny.ply -o bunny.exr --size 1024x1024 --spp 16 --aov depth,normal\n"
+                     "  rayengine render bunny.ply -o flight.png --frames 120 --path flight.json\n"
                      "  rayengine render balls.nff -o balls.png --shading direct --linear --stats balls.json",
                      options->common);
   add_scene(sub, options->scene);

@@ -478,6 +478,23 @@ TEST_F(Cli, FramesTurnTheCamera) {
   EXPECT_EQ(stats["rays_by_kind"]["primary"], 3 * 24 * 16);
 }
 
+TEST_F(Cli, FramesGoAlongAPath) {
+  folder_.write("path.json", R"([{}, {"from": [6, 6, 4]}, {"from": [0, 8, 3], "time": 3}])");
+  const test::Outcome outcome = run("render scene.nff -o fly.png --frames 4 --path path.json --size 24x16");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  ASSERT_EQ(run("render scene.nff -o one.png --size 24x16").code, 0);
+  EXPECT_EQ(test::content(file("fly.0000.png")), test::content(file("one.png")));
+  EXPECT_NE(test::content(file("fly.0003.png")), test::content(file("one.png")));
+}
+
+TEST_F(Cli, APathThatCannotBeGoneLeavesNothingBehind) {
+  expect_failure(2, "render scene.nff --path path.json", "give --frames");
+  expect_failure(1, "render scene.nff -o fly.png --frames 3 --path none.json", "none.json");
+  folder_.write("path.json", "[{},\n{\"form\": [6, 6, 4]}]");
+  expect_failure(1, "render scene.nff -o fly.png --frames 3 --path path.json", "path.json:2: unknown key 'form'");
+  EXPECT_FALSE(fs::exists(file("fly.0000.png")));
+}
+
 TEST_F(Cli, PaperCarrWritesItsFourRows) {
   const test::Outcome outcome = run("paper carr scene.nff -o carr");
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -21,8 +21,10 @@ Scene a_scene() {
 
 TEST(Animation, TheCameraTurnsAboutWhatItLooksAt) {
   const Camera camera{.from = {1, -6, 2}, .at = {1, 0, 0}, .up = {0, 0, 1}};
-  EXPECT_EQ(turntable(camera, 0, 4).from, camera.from);
-  const Camera quarter = turntable(camera, 1, 4);
+  const std::vector<Camera> turn = turntable(camera, 4);
+  ASSERT_EQ(turn.size(), 4u);
+  EXPECT_EQ(turn[0].from, camera.from);
+  const Camera& quarter = turn[1];
   EXPECT_NEAR(quarter.from.x, 7, 1e-12);
   EXPECT_NEAR(quarter.from.y, 0, 1e-12);
   EXPECT_NEAR(quarter.from.z, 2, 1e-12);
@@ -34,10 +36,11 @@ TEST(Animation, FramesAreThoseRenderedAlone) {
   const auto tracer = make_tracer("embree", scene.geometry);
   std::vector<int> order;
   std::uint64_t rays = 0;
-  const RenderStats sum = render_turn(scene, *tracer, {.depth = 2}, 5, [&](int frame, RenderResult& result) {
+  const std::vector<Camera> turn = turntable(scene.camera, 5);
+  const RenderStats sum = render_frames(scene, turn, *tracer, {.depth = 2}, [&](int frame, RenderResult& result) {
     order.push_back(frame);
     Scene turned = scene;
-    turned.camera = turntable(scene.camera, frame, 5);
+    turned.camera = turn[static_cast<std::size_t>(frame)];
     RenderResult alone = render(turned, *tracer, {.depth = 2});
     rays += alone.stats.rays[0] + alone.stats.rays[1];
     for (int y = 0; y < 32; ++y)
@@ -52,12 +55,26 @@ TEST(Animation, AFailureEndsIt) {
   const Scene scene = a_scene();
   const auto tracer = make_tracer("embree", scene.geometry);
   int frames = 0;
-  EXPECT_THROW(render_turn(scene, *tracer, {}, 20,
-                           [&](int, RenderResult&) {
-                             if (++frames == 2) throw Error("the disk is full");
-                           }),
+  EXPECT_THROW(render_frames(scene, turntable(scene.camera, 20), *tracer, {},
+                             [&](int, RenderResult&) {
+                               if (++frames == 2) throw Error("the disk is full");
+                             }),
                Error);
   EXPECT_LE(frames, 2);
+}
+
+TEST(Animation, ACameraThatSeesNothingIsToldOfBeforeAnyWork) {
+  const Scene scene = a_scene();
+  std::vector<Camera> cameras = turntable(scene.camera, 3);
+  cameras[2].at = cameras[2].from;
+  int frames = 0;
+  try {
+    render_frames(scene, cameras, *make_tracer("embree", scene.geometry), {}, [&](int, RenderResult&) { ++frames; });
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("in frame 2, the camera sees nothing"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(frames, 0);
 }
 
 }  // namespace
