@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "accel/ray.h"
@@ -19,6 +20,12 @@ struct Box {
   void add(const Box& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
   glm::dvec3 center() const { return 0.5 * (lower + upper); }
   glm::dvec3 size() const { return upper - lower; }
+
+  /// From a point; 0 within.
+  double squared_distance(const glm::dvec3& p) const {
+    const glm::dvec3 d = glm::max(glm::max(lower - p, p - upper), glm::dvec3(0));
+    return glm::dot(d, d);
+  }
 
   /// The largest absolute coordinate.
   double extent() const {

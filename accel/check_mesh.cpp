@@ -25,4 +25,10 @@ void check_mesh(const Mesh& mesh) {
                     std::to_string(mesh.triangles[i][k]) + ", but there are " + std::to_string(mesh.positions.size()));
 }
 
+void check_mesh(const Mesh& mesh, double tolerance) {
+  if (!(tolerance > 0 && std::isfinite(tolerance)))
+    throw Error("a tolerance of " + std::to_string(tolerance) + " cannot be kept: give a finite number above 0");
+  check_mesh(mesh);
+}
+
 }  // namespace rayengine

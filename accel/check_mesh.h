@@ -7,4 +7,7 @@ namespace rayengine {
 /// Throws Error unless positions are finite, indices within range, and normals one a position or none.
 void check_mesh(const Mesh& mesh);
 
+/// The same, and that a tolerance that something is to be kept to is finite and above 0.
+void check_mesh(const Mesh& mesh, double tolerance);
+
 }  // namespace rayengine

@@ -41,22 +41,12 @@ Box transformed(const Box& box, const Affine& map) {
   return result;
 }
 
-/// First and last but one: meshes have their vertices in a row.
-std::pair<std::uint32_t, std::uint32_t> vertex_range(std::span<const glm::uvec3> triangles) {
-  std::uint32_t begin = no_id, end = 0;
-  for (const glm::uvec3& t : triangles) {
-    begin = std::min({begin, t.x, t.y, t.z});
-    end = std::max({end, t.x + 1, t.y + 1, t.z + 1});
-  }
-  return {std::min(begin, end), end};
-}
-
 }  // namespace
 
 std::size_t Geometry::bytes() const {
   std::size_t total = bytes_of(vertices) + bytes_of(exact_vertices) + bytes_of(normals) + bytes_of(triangles) +
                       bytes_of(triangle_object) + bytes_of(quadrics) + bytes_of(forms) + bytes_of(instances) +
-                      bytes_of(groups) + bytes_of(objects);
+                      bytes_of(groups) + bytes_of(objects) + bytes_of(mesh_bounds);
   for (const auto& group : groups) total += group->bytes();
   return total;
 }
@@ -67,10 +57,23 @@ std::uint32_t primitive_count(const Geometry& geometry, std::uint32_t object) {
   return end - geometry.objects[object].first_primitive;
 }
 
+std::span<const glm::uvec3> triangles_of(const Geometry& geometry, std::uint32_t object) {
+  return std::span(geometry.triangles).subspan(geometry.objects[object].first, primitive_count(geometry, object));
+}
+
+std::pair<std::uint32_t, std::uint32_t> vertex_range(std::span<const glm::uvec3> triangles) {
+  std::uint32_t begin = no_id, end = 0;
+  for (const glm::uvec3& t : triangles) {
+    begin = std::min({begin, t.x, t.y, t.z});
+    end = std::max({end, t.x + 1, t.y + 1, t.z + 1});
+  }
+  return {std::min(begin, end), end};
+}
+
 Mesh mesh_of(const Geometry& geometry, std::uint32_t object) {
-  const auto first = geometry.triangles.begin() + geometry.objects[object].first;
+  const auto given = triangles_of(geometry, object);
   Mesh mesh;
-  mesh.triangles.assign(first, first + primitive_count(geometry, object));
+  mesh.triangles.assign(given.begin(), given.end());
   const auto [begin, end] = vertex_range(mesh.triangles);
   for (std::uint32_t v = begin; v < end; ++v) mesh.positions.push_back(geometry.vertex(v));
   if (!geometry.normals.empty()) mesh.normals.assign(geometry.normals.begin() + begin, geometry.normals.begin() + end);

@@ -52,6 +52,7 @@ struct Geometry {
   std::vector<std::shared_ptr<const Geometry>> groups;
 
   std::vector<Object> objects;
+  std::vector<Box> mesh_bounds;       ///< of each mesh object, in their order
   Box bounds;                         ///< of everything, instances included
   std::uint32_t primitive_count = 0;  ///< of everything, instances included
 
@@ -64,6 +65,12 @@ struct Geometry {
 
 /// A mesh object as it was given, in world space.
 Mesh mesh_of(const Geometry& geometry, std::uint32_t object);
+
+/// Those of a mesh object.
+std::span<const glm::uvec3> triangles_of(const Geometry& geometry, std::uint32_t object);
+
+/// First vertex of some triangles and last but one: meshes have theirs in a row.
+std::pair<std::uint32_t, std::uint32_t> vertex_range(std::span<const glm::uvec3> triangles);
 
 /// How many primitive ids an object takes: its triangles, a quadric's parts, or all that an instance places.
 std::uint32_t primitive_count(const Geometry& geometry, std::uint32_t object);

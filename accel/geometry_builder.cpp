@@ -69,7 +69,9 @@ std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, con
   const WorldToObject to_object = inverse(to_world);
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
   const std::uint32_t object = begin(Object::Kind::mesh, geometry_.triangles.size(), material);
+  geometry_.mesh_bounds.emplace_back();
   for (const glm::dvec3& p : mesh.positions) place(to_world.point(p));
+  geometry_.bounds.add(geometry_.mesh_bounds.back());
   if (!mesh.normals.empty()) {
     geometry_.normals.resize(base);
     for (const glm::vec3& n : mesh.normals) geometry_.normals.push_back(world_normal(to_object, n));
@@ -111,7 +113,7 @@ void GeometryBuilder::place(const glm::dvec3& vertex) {
   exact_ = exact_ && is_float(vertex);
   geometry_.vertices.emplace_back(vertex);
   geometry_.exact_vertices.push_back(vertex);
-  geometry_.bounds.add(vertex);
+  geometry_.mesh_bounds.back().add(vertex);
 }
 
 void GeometryBuilder::place(std::span<const glm::uvec3> triangles, std::uint32_t base, std::uint32_t object) {
@@ -153,7 +155,9 @@ std::uint32_t GeometryBuilder::add(const Geometry& from, std::uint32_t object) {
 
 void GeometryBuilder::copy_mesh(const Mesh& mesh, std::uint32_t copy) {
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
+  geometry_.mesh_bounds.emplace_back();
   for (const glm::dvec3& p : mesh.positions) place(p);
+  geometry_.bounds.add(geometry_.mesh_bounds.back());
   if (!mesh.normals.empty()) {
     geometry_.normals.resize(base);
     geometry_.normals.insert(geometry_.normals.end(), mesh.normals.begin(), mesh.normals.end());

@@ -89,6 +89,17 @@ bool is_ball(const Quadric& q) {
   return q.type == QuadricType::sphere && q.zmin <= -1 && q.zmax >= 1 && m == glm::dmat3(m[0][0]);
 }
 
+void add_traits(TraitsByType& traits, std::span<const Quadric> quadrics) {
+  for (const Quadric& q : quadrics) {
+    QuadricTraits& t = traits[static_cast<std::size_t>(q.type)];
+    const bool ball = is_ball(q);
+    t.any = true;
+    t.clipped |= !ball && (q.zmin > -infinity || q.zmax < infinity);
+    t.capped |= q.capped;
+    t.balls &= ball;
+  }
+}
+
 Box bounds(const Quadric& q, const GeneralForm* form) {
   const Affine map = object_to_world(q.to_object);
   switch (q.type) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "accel/box.h"
@@ -65,6 +66,18 @@ inline std::uint32_t primitive_count(const Quadric& q) { return q.capped ? 3 : 1
 
 /// Whether it is a whole sphere under one scale for all axes, without any turning.
 bool is_ball(const Quadric& quadric);
+
+/// What kernels need of the quadrics of one type.
+struct QuadricTraits {
+  bool any = false;
+  bool clipped = false;  ///< by planes across z, be it only one of them
+  bool capped = false;
+  bool balls = true;  ///< all of them are is_ball()
+};
+using TraitsByType = std::array<QuadricTraits, quadric_type_count>;
+
+/// Adds what these need to what others do.
+void add_traits(TraitsByType& traits, std::span<const Quadric> quadrics);
 
 /// World-space bounds of the clipped surface; infinite where it is. `form` is needed for `general` alone.
 Box bounds(const Quadric& quadric, const GeneralForm* form);

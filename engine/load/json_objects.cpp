@@ -125,9 +125,12 @@ std::uint32_t JsonObjects::material(JsonFields& fields) const {
   return found->second;
 }
 
-Mesh JsonObjects::read_mesh(JsonFields& fields) {
+const Mesh& JsonObjects::read_mesh(JsonFields& fields) {
   const JsonView file = fields.need("file");
-  return at_place(file.place(), [&] { return load_mesh(folder_ / file.string(), notes_); });
+  const std::filesystem::path path = folder_ / file.string();
+  const auto known = meshes_.find(path);
+  if (known != meshes_.end()) return known->second;
+  return meshes_.emplace(path, at_place(file.place(), [&] { return load_mesh(path, notes_); })).first->second;
 }
 
 std::shared_ptr<const Geometry> JsonObjects::group(const JsonView& value) {

@@ -35,13 +35,14 @@ class JsonObjects {
   void add_mesh(GeometryBuilder& builder, JsonFields& fields, const Mesh& mesh) const;
   void add_instance(GeometryBuilder& builder, JsonFields& fields);
   std::uint32_t material(JsonFields& fields) const;
-  Mesh read_mesh(JsonFields& fields);
+  const Mesh& read_mesh(JsonFields& fields);
   std::shared_ptr<const Geometry> group(const JsonView& value);
   void build(Group& group);
 
   std::filesystem::path folder_;
   const MaterialIndices& materials_;
   std::map<std::string, Group, std::less<>> groups_;
+  std::map<std::filesystem::path, Mesh> meshes_;  // by file: several objects may be of one
   std::vector<std::string>& notes_;
   int depth_ = 0;
 };

@@ -63,14 +63,14 @@ bool fits(const Header& header, std::uintmax_t size) {
                      header.normals * sizeof(glm::vec3) + header.triangles * sizeof(glm::uvec3);
 }
 
-std::optional<Simplified> read_file(const fs::path& file, const Mesh& original) {
+std::optional<CoarserMesh> read_file(const fs::path& file, const Mesh& original) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   Header header;
   if (error || !stream.read(reinterpret_cast<char*>(&header), sizeof header)) return {};
   if (std::memcmp(header.format, Header().format, sizeof header.format) != 0 || !fits(header, size)) return {};
-  Simplified found{{}, header.distance};
+  CoarserMesh found{{}, header.distance};
   std::string hash(hash_length, ' ');
   if (!read(stream, found.mesh.positions, header.positions) || !read(stream, found.mesh.normals, header.normals) ||
       !read(stream, found.mesh.triangles, header.triangles) || !stream.read(hash.data(), hash_length) ||
@@ -106,7 +106,7 @@ void make_room(const fs::path& folder) {
   }
 }
 
-void write_file(const fs::path& file, const Simplified& simplified, bool is_the_original) {
+void write_file(const fs::path& file, const CoarserMesh& simplified, bool is_the_original) {
   const Mesh none;
   const Mesh& mesh = is_the_original ? none : simplified.mesh;
   const Header header{.positions = mesh.positions.size(),
@@ -119,9 +119,9 @@ void write_file(const fs::path& file, const Simplified& simplified, bool is_the_
     make_room(file.parent_path());
 }
 
-std::optional<Simplified> find(const fs::path& file, const Mesh& mesh) {
+std::optional<CoarserMesh> find(const fs::path& file, const Mesh& mesh) {
   if (file.empty()) return {};
-  std::optional<Simplified> found = read_file(file, mesh);
+  std::optional<CoarserMesh> found = read_file(file, mesh);
   std::error_code ignored;
   if (found) fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   return found;
@@ -137,14 +137,14 @@ bool may_have_simplified(std::size_t triangles) {
   return false;
 }
 
-std::optional<Simplified> find_simplified(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
+std::optional<CoarserMesh> find_simplified(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
   return find(file_of(mesh, tolerance, most_decimated), mesh);
 }
 
-Simplified simplify_cached(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
+CoarserMesh simplify_cached(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
   const fs::path file = file_of(mesh, tolerance, most_decimated);
   if (auto found = find(file, mesh)) return *std::move(found);
-  Simplified result = simplify(mesh, tolerance, most_decimated);
+  CoarserMesh result = simplify(mesh, tolerance, most_decimated);
   if (!file.empty()) write_file(file, result, result.mesh.triangles.size() == mesh.triangles.size());
   return result;
 }

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "accel/frame.h"
 #include "accel/tracer.h"
 
 namespace rayengine {
@@ -11,12 +12,8 @@ namespace {
 
 /// A right-handed frame whose third axis is `axis` itself and whose other two have the length `radius`.
 glm::dmat3 frame(const glm::dvec3& axis, double radius) {
-  const glm::dvec3 size = glm::abs(axis);
-  glm::dvec3 away(0);
-  away[size.x < size.y ? (size.x < size.z ? 0 : 2) : (size.y < size.z ? 1 : 2)] = 1;
-  const glm::dvec3 u = glm::normalize(glm::cross(away, axis));
-  const glm::dvec3 v = glm::cross(glm::normalize(axis), u);
-  return {radius * u, radius * v, axis};
+  const glm::dmat3 turn = frame_about(glm::normalize(axis));
+  return {radius * turn[0], radius * turn[1], axis};
 }
 
 QuadricShape shape_of(QuadricType type) {

@@ -1,10 +1,8 @@
 #include "engine/load/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "accel/check_mesh.h"
-#include "accel/tracer.h"
 #include "engine/load/cluster.h"
 #include "engine/load/decimate.h"
 #include "engine/load/surface_distance.h"
@@ -13,13 +11,6 @@ namespace rayengine {
 namespace {
 
 constexpr double clusters_share = 0.75;  // of the tolerance; the decimater has the rest
-
-void check(const Mesh& mesh, double tolerance) {
-  if (!(tolerance > 0 && std::isfinite(tolerance)))
-    throw Error("a mesh cannot be simplified to a tolerance of " + std::to_string(tolerance) +
-                ": give a finite number above 0");
-  check_mesh(mesh);
-}
 
 /// Positions from the mesh's own centre in units of the tolerance: as exact far off as near, and what OpenMesh takes
 /// for a triangle without area does not depend on units.
@@ -63,8 +54,8 @@ Mesh with_used_vertices(const Mesh& mesh, std::vector<glm::uvec3> triangles) {
 
 }  // namespace
 
-Simplified simplify(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
-  check(mesh, tolerance);
+CoarserMesh simplify(const Mesh& mesh, double tolerance, std::size_t most_decimated) {
+  check_mesh(mesh, tolerance);
   const std::vector<glm::dvec3> local = in_tolerances(mesh, tolerance);
   const double whole = 1 - roundings(local);
   const std::vector<glm::uvec3> triangles = with_area(local, mesh.triangles);

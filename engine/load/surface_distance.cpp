@@ -20,10 +20,7 @@ double to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b)
   return squared(p - (a + s * along));
 }
 
-/// From a point in the frame of the BVH to a box there.
-double to_box(const glm::dvec3& p, const FloatBox& box) {
-  return squared(glm::max(glm::max(glm::dvec3(box.lower) - p, p - glm::dvec3(box.upper)), glm::dvec3(0)));
-}
+Box widened(const FloatBox& box) { return {glm::dvec3(box.lower), glm::dvec3(box.upper)}; }
 
 BinaryBvh build_over(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles) {
   std::vector<Box> boxes(triangles.size());
@@ -116,7 +113,7 @@ std::optional<double> Surface::first_near(std::uint32_t at, const Query& query) 
     return {};
   }
   std::array<std::pair<double, std::uint32_t>, 2> children{{{0, at + 1}, {0, node.right}}};
-  for (auto& [distance, child] : children) distance = to_box(query.middle, bvh_.nodes[child].box);
+  for (auto& [distance, child] : children) distance = widened(bvh_.nodes[child].box).squared_distance(query.middle);
   if (children[1].first < children[0].first) std::swap(children[0], children[1]);
   for (const auto& [distance, child] : children)
     if (distance <= query.squared_radius)

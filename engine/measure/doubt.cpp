@@ -7,17 +7,11 @@
 #include <glm/vec2.hpp>
 #include <numbers>
 
+#include "accel/frame.h"
 #include "accel/surface.h"
 
 namespace rayengine {
 namespace {
-
-/// Two unit vectors across `d`, which has unit length.
-std::array<glm::dvec3, 2> across(const glm::dvec3& d) {
-  const glm::dvec3 aside = std::abs(d.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 right = glm::normalize(glm::cross(d, aside));
-  return {right, glm::cross(right, d)};
-}
 
 Ray with_interval(Ray ray, double widening) {
   ray.tmin -= widening;
@@ -59,14 +53,14 @@ double distance_to_triangle(const std::array<glm::dvec2, 3>& k) {
 
 /// The distance of the ray's line from a triangle, measured across the ray.
 double distance(const Ray& ray, const PrimitiveRef& ref) {
-  const auto [right, up] = across(glm::normalize(ray.direction));
+  const glm::dmat3 frame = frame_about(glm::normalize(ray.direction));
   const glm::uvec3& index = ref.geometry->triangles[ref.triangle()];
   std::array<glm::dvec2, 3> seen;
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 corner = ref.geometry->vertex(index[i]);
     const glm::dvec3 from =
         (ref.instance ? object_to_world(ref.instance->to_group).point(corner) : corner) - ray.origin;
-    seen[static_cast<std::size_t>(i)] = {glm::dot(from, right), glm::dot(from, up)};
+    seen[static_cast<std::size_t>(i)] = {glm::dot(from, frame[0]), glm::dot(from, frame[1])};
   }
   return distance_to_triangle(seen);
 }
@@ -107,11 +101,11 @@ std::vector<Ray> neighbours(const Doubt& doubt, double part) {
   const Ray& ray = doubt.ray;
   const double length = glm::length(ray.direction), step = doubt.bound / length;
   const double t = std::min(doubt.hit.t, doubt.exact.t);
-  const auto [right, up] = across(ray.direction / length);
+  const glm::dmat3 frame = frame_about(ray.direction / length);
   std::vector<Ray> rays{with_interval(ray, step), with_interval(ray, -step)};
   for (int i = 0; i < 8; ++i) {
     const double angle = i * std::numbers::pi / 4;
-    const glm::dvec3 move = part * doubt.bound * (std::cos(angle) * right + std::sin(angle) * up);
+    const glm::dvec3 move = part * doubt.bound * (std::cos(angle) * frame[0] + std::sin(angle) * frame[1]);
     Ray shifted = ray, turned = ray;
     shifted.origin += move;
     if (t > 0) turned.direction += move / t;

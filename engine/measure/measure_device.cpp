@@ -117,20 +117,23 @@ Mesh open_tubes() {
 }
 
 /// A triangle.
-double recognising_seconds(const Mesh& mesh, Pieces pieces) {
-  return best_seconds([&] { recognise(mesh, 0.01, pieces); }) / static_cast<double>(mesh.triangles.size());
+double seconds_each(const Mesh& mesh, const std::function<void()>& work) {
+  return best_seconds(work) / static_cast<double>(mesh.triangles.size());
 }
 
 }  // namespace
 
-DeviceMeasurements measure_device(int threads) {
+DeviceMeasurements measure_device(int threads, const std::function<void(const Mesh&, double)>& simplify) {
   DeviceMeasurements device;
   for (const Precision precision : {Precision::fast, Precision::robust})
     device.tracers.push_back(measure("embree", precision, threads));
   for (const Precision precision : {Precision::robust, Precision::certified})
     device.tracers.push_back(measure("bvh", precision, threads));
-  device.recognise_whole = recognising_seconds(subdivided_sphere(7), Pieces::whole);
-  device.recognise_parts = recognising_seconds(open_tubes(), Pieces::parts);
+  const Mesh ball = subdivided_sphere(7), tubes = open_tubes();
+  device.recognise_whole = seconds_each(ball, [&] { recognise(ball, 0.01, Pieces::whole); });
+  device.recognise_parts = seconds_each(tubes, [&] { recognise(tubes, 0.01, Pieces::parts); });
+  constexpr double sag = 0.01;  // of a ball of radius 1: far larger than its triangles
+  device.simplify = seconds_each(ball, [&] { simplify(ball, sag); });
   return device;
 }
 

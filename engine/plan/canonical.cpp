@@ -120,13 +120,13 @@ std::optional<CanonicalQuadric> as_type(QuadricType type, const Quadric& general
 /// What a quadric may be moved by.
 double allowed(const Scene& scene, const Quadric& q, const Tolerance& tolerance) {
   ObjectStatistics o;
-  o.distance = distance_to(bounds(q, nullptr), scene.camera.from);
+  o.distance = std::sqrt(bounds(q, nullptr).squared_distance(scene.camera.from));
   return model_share * allowance(tolerance, o, pixel_angle(scene.camera));
 }
 
 Box bounds_of_all(const Geometry& g) {
   Box box;
-  for (std::uint32_t i = 0; i < g.vertices.size(); ++i) box.add(g.vertex(i));
+  for (const Box& mesh : g.mesh_bounds) box.add(mesh);
   for (const Quadric& q : g.quadrics) box.add(bounds(g, q));
   for (const Instance& i : g.instances) box.add(bounds(g, i));
   return box;

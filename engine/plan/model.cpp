@@ -66,10 +66,10 @@ class ModelBuilder {
     if (found.quadrics.empty()) return false;
     Replacement what = replacement(mesh);
     for (const RecognisedQuadric& q : found.quadrics) {
-      add(builder_.add(q.shape, material(), q.to_world));
+      add(q.shape, material(), q.to_world);
       what.distance = std::max(what.distance, q.residual);
     }
-    if (!found.rest.empty()) add(builder_.add(part_of(mesh, found.rest), material()));
+    if (!found.rest.empty()) add(part_of(mesh, found.rest), material());
     what.quadrics = static_cast<std::uint32_t>(found.quadrics.size());
     what.triangles_left = static_cast<std::uint32_t>(found.rest.size());
     replaced_.push_back(what);
@@ -82,7 +82,7 @@ class ModelBuilder {
     const Mesh mesh = mesh_of(geometry_, object_);
     const std::optional<CoarserMesh> coarser = find(mesh, plan_.allowances[object_]);
     if (!coarser || coarser->mesh.triangles.size() >= mesh.triangles.size()) return false;
-    add(builder_.add(coarser->mesh, material()));
+    add(coarser->mesh, material());
     Replacement what = replacement(mesh);
     what.triangles_left = static_cast<std::uint32_t>(coarser->mesh.triangles.size());
     what.distance = coarser->distance;
@@ -112,7 +112,7 @@ class ModelBuilder {
       one.add(geometry_, repeat.first);
       group = one.build();
     }
-    add(builder_.add(group, repeat.from_first, material()));
+    add(group, repeat.from_first, material());
     if (object_ != repeat.first)
       replaced_.push_back({object_, Representation::instance, group->primitive_count, 0, 0, repeat.error});
     return true;
@@ -131,14 +131,19 @@ class ModelBuilder {
     return false;
   }
 
-  void keep() { add(builder_.add(geometry_, object_)); }
+  void keep() { add(geometry_, object_); }
 
   Replacement replacement(const Mesh& mesh) const {
     return {object_, plan_.objects[object_], static_cast<std::uint32_t>(mesh.triangles.size()), 0, 0, 0};
   }
 
   std::uint32_t material() const { return geometry_.objects[object_].material; }
-  void add(std::uint32_t) { numbers_.push_back(object_number(scene_.object_numbers, object_)); }
+  /// What stands in for the object at hand, or for a part of it.
+  template <class... T>
+  void add(const T&... what) {
+    builder_.add(what...);
+    numbers_.push_back(object_number(scene_.object_numbers, object_));
+  }
 
   const Scene& scene_;
   const Geometry& geometry_;

@@ -26,10 +26,10 @@ struct Model {
   std::vector<Replacement> replaced;
 };
 
-/// A coarser mesh within a distance of the given one, and a bound on the distance that it kept.
+/// A coarser mesh within a distance of the given one.
 struct CoarserMesh {
   Mesh mesh;
-  double distance = 0;
+  double distance = 0;  ///< a bound on the two-sided Hausdorff distance that it kept
 };
 
 /// Makes meshes coarser: the loader module has one (see engine/load/simplifier.h); without any, meshes stay as they

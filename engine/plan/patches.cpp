@@ -12,7 +12,7 @@
 namespace rayengine {
 namespace {
 
-constexpr std::uint32_t patches = 24, patch_triangles = 48;
+constexpr std::uint32_t patch_triangles = 48;
 constexpr std::size_t terms = 10;    // of a quadric's equation
 constexpr double on_quadric = 1e-5;  // residual, of the patch's size: well above what files of floats round
 constexpr std::size_t least_vertices = 2 * terms;  // fewer lie on some quadric whatever they are
@@ -113,10 +113,10 @@ Lies where_it_lies(const Geometry& g, std::span<const glm::uvec3> triangles) {
 
 }  // namespace
 
-Patches look_at_patches(const Geometry& geometry, std::uint32_t object) {
-  const std::uint32_t count = primitive_count(geometry, object), at_once = std::min(count, patch_triangles);
+Patches look_at_patches(const Geometry& geometry, std::uint32_t object, std::uint32_t patches) {
+  const std::span all = triangles_of(geometry, object);
+  const auto count = static_cast<std::uint32_t>(all.size()), at_once = std::min(count, patch_triangles);
   if (count == 0) return {};
-  const std::span all = std::span(geometry.triangles).subspan(geometry.objects[object].first, count);
   const std::uint32_t looks = std::clamp(count / patch_triangles, 1u, patches);
   Patches result;
   for (std::uint32_t i = 0; i < looks; ++i) {

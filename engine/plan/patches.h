@@ -13,7 +13,7 @@ struct Patches {
   double ball_share = 0;     ///< those that lie on an ellipsoid, and on no other quadric
 };
 
-/// Looks at no more than some thousand triangles.
-Patches look_at_patches(const Geometry& geometry, std::uint32_t object);
+/// Looks at so many patches, of 48 triangles each; at one at least, and at no more than there are.
+Patches look_at_patches(const Geometry& geometry, std::uint32_t object, std::uint32_t patches);
 
 }  // namespace rayengine

@@ -1,5 +1,8 @@
 #include "engine/plan/repeats.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -23,15 +26,11 @@ struct Part {
   const Geometry* geometry;
   std::uint32_t object;
   std::span<const glm::uvec3> triangles;
-  std::uint32_t base = no_id, vertices = 0;  // its vertices are base + [0, vertices)
+  std::uint32_t base, vertices;  // its vertices are base + [0, vertices)
 
-  Part(const Geometry& g, std::uint32_t o) : geometry(&g), object(o) {
-    const std::uint32_t next = o + 1 < g.objects.size() ? g.objects[o + 1].first_primitive : g.primitive_count;
-    triangles = {g.triangles.data() + g.objects[o].first, next - g.objects[o].first_primitive};
-    std::uint32_t last = 0;
-    for (const glm::uvec3& t : triangles)
-      for (int k = 0; k < 3; ++k) base = std::min(base, t[k]), last = std::max(last, t[k]);
-    if (!triangles.empty()) vertices = last - base + 1;
+  Part(const Geometry& g, std::uint32_t o) : geometry(&g), object(o), triangles(triangles_of(g, o)) {
+    const auto [begin, end] = vertex_range(triangles);
+    base = begin, vertices = end - begin;
   }
 
   glm::dvec3 position(std::uint32_t i) const { return geometry->vertex(base + i); }
@@ -145,18 +144,27 @@ std::optional<Repeat> rigid_repeat(const Part& first, const Part& part, double t
   return Repeat{first.object, part.object, *map, error};
 }
 
+/// What parts are sorted by.
+struct Names {
+  std::string triangles, shape;
+
+  explicit Names(const Part& part) {
+    const ContentHash hash = hash_of_triangles(part);
+    triangles = hash.name(), shape = hash_of_shape(part, hash).name();
+  }
+};
+
 class Finder {
  public:
   explicit Finder(double tolerance) : tolerance_(tolerance) {}
 
   /// The repeat that a part is; else it is a first.
-  std::optional<Repeat> add(const Part& part) {
-    const ContentHash triangles = hash_of_triangles(part);
-    const auto [same, is_new] = by_shape_.try_emplace(hash_of_shape(part, triangles).name(), part);
+  std::optional<Repeat> add(const Part& part, const Names& names) {
+    const auto [same, is_new] = by_shape_.try_emplace(names.shape, part);
     if (!is_new)
       if (const auto repeat = exact_repeat(same->second, part)) return repeat;
     if (tolerance_ == 0) return {};
-    std::vector<Part>& firsts = by_triangles_[triangles.name()];
+    std::vector<Part>& firsts = by_triangles_[names.triangles];
     for (const Part& first : firsts)
       if (const auto repeat = rigid_repeat(first, part, tolerance_)) {
         if (is_new) by_shape_.erase(same);
@@ -178,14 +186,19 @@ std::vector<Repeat> find_repeats(const Geometry& geometry, double tolerance, std
   if (!(tolerance >= 0 && std::isfinite(tolerance)))
     throw Error("repeats cannot be found to a tolerance of " + std::to_string(tolerance) +
                 ": give a finite number, 0 or above");
+  std::vector<std::uint32_t> objects;
+  for (std::uint32_t i = 0; i < geometry.objects.size(); ++i)
+    if (geometry.objects[i].kind == Object::Kind::mesh && primitive_count(geometry, i) >= std::max(min_triangles, 1u))
+      objects.push_back(i);
+  std::vector<std::optional<std::pair<Part, Names>>> parts(objects.size());
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    const Part part(geometry, objects[i]);
+    parts[i].emplace(part, Names(part));
+  });
   Finder finder(tolerance);
   std::vector<Repeat> repeats;
-  for (std::uint32_t i = 0; i < geometry.objects.size(); ++i) {
-    if (geometry.objects[i].kind != Object::Kind::mesh) continue;
-    const Part part(geometry, i);
-    if (part.triangles.empty() || part.triangles.size() < min_triangles) continue;
-    if (const auto repeat = finder.add(part)) repeats.push_back(*repeat);
-  }
+  for (const auto& entry : parts)
+    if (const auto repeat = finder.add(entry->first, entry->second)) repeats.push_back(*repeat);
   return repeats;
 }
 

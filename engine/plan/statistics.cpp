@@ -13,23 +13,19 @@
 namespace rayengine {
 namespace {
 
-Box bounds_of_mesh(const Geometry& g, std::uint32_t object) {
-  if (g.objects.size() == 1) return g.bounds;
-  Box box;
-  const std::uint32_t first = g.objects[object].first, last = first + primitive_count(g, object);
-  for (std::uint32_t t = first; t < last; ++t)
-    for (int k = 0; k < 3; ++k) box.add(g.vertex(g.triangles[t][k]));
-  return box;
-}
+// Patches that are looked at: of a mesh, and of all of them together while each has a few.
+constexpr std::size_t enough_patches = 24, fewest_patches = 4, most_patches = 1024;
 
-Box bounds_of(const Geometry& g, std::uint32_t object) {
-  const Object& o = g.objects[object];
-  if (o.kind == Object::Kind::mesh) return bounds_of_mesh(g, object);
-  if (o.kind == Object::Kind::quadric) return bounds(g, g.quadrics[o.first]);
-  Box box;
-  for (std::size_t i = o.first; i < g.instances.size() && g.instances[i].object == object; ++i)
-    box.add(bounds(g, g.instances[i]));
-  return box;
+/// Of every object.
+std::vector<Box> bounds_of_objects(const Geometry& g) {
+  std::vector<Box> boxes;
+  auto mesh = g.mesh_bounds.begin();
+  for (const Object& o : g.objects)
+    boxes.push_back(o.kind == Object::Kind::mesh      ? *mesh++
+                    : o.kind == Object::Kind::quadric ? bounds(g, g.quadrics[o.first])
+                                                      : Box{});
+  for (const Instance& i : g.instances) boxes[i.object].add(bounds(g, i));
+  return boxes;
 }
 
 /// What is 1 in object space is at least so much in the world; a general form's size is known by its bounds alone.
@@ -42,21 +38,21 @@ double thickness(const Quadric& q, double radius) {
 void count(const Geometry& g, SceneStatistics& result) {
   result.triangles += g.triangles.size();
   result.quadrics += g.quadrics.size();
-  for (const Quadric& q : g.quadrics) ++result.quadrics_of[static_cast<std::size_t>(q.type)];
+  add_traits(result.traits, g.quadrics);
 }
 
-ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const glm::dvec3& eye) {
+ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const Box& box, const glm::dvec3& eye,
+                         std::uint32_t patches) {
   const Object& o = g.objects[object];
-  const Box box = bounds_of(g, object);
   ObjectStatistics result{.kind = o.kind};
   result.radius = box.finite() ? glm::length(box.size()) / 2 : box.empty() ? 0 : infinity;
-  result.distance = box.empty() ? infinity : distance_to(box, eye);
+  result.distance = box.empty() ? infinity : std::sqrt(box.squared_distance(eye));
   if (o.kind == Object::Kind::quadric) {
     result.type = g.quadrics[o.first].type;
     result.thickness = thickness(g.quadrics[o.first], result.radius);
   }
   if (o.kind == Object::Kind::mesh) {
-    const Patches seen = look_at_patches(g, object);
+    const Patches seen = look_at_patches(g, object, patches);
     result.triangles = primitive_count(g, object);
     result.spacing = std::sqrt(2 * seen.area);
     result.quadric_share = seen.quadric_share;
@@ -72,17 +68,17 @@ void check(const Tolerance& tolerance) {
     throw Error("a tolerance of " + std::to_string(tolerance.value) + " says nothing: give 0, which is exact, or more");
 }
 
-double distance_to(const Box& box, const glm::dvec3& p) {
-  return glm::length(glm::max(glm::max(box.lower - p, p - box.upper), glm::dvec3(0)));
-}
-
 SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent) {
   const Geometry& g = *scene.geometry;
   const Camera& camera = scene.camera;
   SceneStatistics result;
   result.objects.resize(g.objects.size());
-  tbb::parallel_for(std::size_t{0}, g.objects.size(),
-                    [&](std::size_t i) { result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), camera.from); });
+  const std::vector<Box> boxes = bounds_of_objects(g);
+  const auto patches = static_cast<std::uint32_t>(
+      std::clamp(most_patches / std::max(g.mesh_bounds.size(), std::size_t{1}), fewest_patches, enough_patches));
+  tbb::parallel_for(std::size_t{0}, g.objects.size(), [&](std::size_t i) {
+    result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), boxes[i], camera.from, patches);
+  });
   count(g, result);
   for (const auto& group : g.groups) count(*group, result);
   result.instances = g.instances.size();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,9 +32,9 @@ struct ObjectStatistics {
 /// What a plan must know of a scene.
 struct SceneStatistics {
   std::vector<ObjectStatistics> objects;
-  std::uint64_t triangles = 0, quadrics = 0, instances = 0;     ///< what instances place is counted once
-  std::array<std::uint64_t, quadric_type_count> quadrics_of{};  ///< by type
-  double extent = 0;                                            ///< the largest finite coordinate, the eye's included
+  std::uint64_t triangles = 0, quadrics = 0, instances = 0;  ///< what instances place is counted once
+  TraitsByType traits{};                                     ///< of the quadrics
+  double extent = 0;                                         ///< the largest finite coordinate, the eye's included
   double pixel = 0;  ///< what a pixel subtends at the middle of the picture, in radians
   double rays = 0;   ///< that will be asked for
   bool coherent = true;
@@ -43,11 +42,9 @@ struct SceneStatistics {
   std::uint64_t primitives() const { return triangles + quadrics + instances; }
 };
 
-/// Looks at bounds and at a sample of each mesh, so that the time it takes does not grow with their size.
+/// Looks at bounds and at a sample of each mesh, so that the time it takes grows with the number of objects, not with
+/// their size.
 SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent);
-
-/// 0 within the box.
-double distance_to(const Box& box, const glm::dvec3& p);
 
 /// Rays that a picture will ask for, about: the eye's, one to each light, and bounces where something shines.
 double expected_rays(const Scene& scene, int spp);

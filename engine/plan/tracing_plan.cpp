@@ -5,9 +5,11 @@
 namespace rayengine {
 namespace {
 
+bool is_textbook(Precision precision) { return precision == Precision::half || precision == Precision::fast; }
+
 /// Embree's fast mode lets rays through between triangles: those are wrong by any distance.
 bool leaks(const ObjectStatistics& o, const TracerCost& cost) {
-  return o.kind != Object::Kind::quadric && cost.precision <= Precision::fast;
+  return o.kind != Object::Kind::quadric && is_textbook(cost.precision);
 }
 
 /// First-order: half a dozen roundings of coordinates as large as the scene's, and of the way to the object and through
@@ -17,8 +19,7 @@ double position_error(const ObjectStatistics& o, const SceneStatistics& scene, c
   constexpr double roundings = 6;
   const double way = std::min(o.distance + 2 * o.radius, 4 * scene.extent);
   if (o.kind == Object::Kind::mesh) return roundings * cost.triangle_roundoff * (scene.extent + way);
-  const bool textbook = cost.precision == Precision::fast || cost.precision == Precision::half;
-  const double lost = textbook && o.thickness > 0 ? way * way / o.thickness : 0;
+  const double lost = is_textbook(cost.precision) && o.thickness > 0 ? way * way / o.thickness : 0;
   const double u = o.kind == Object::Kind::instance ? std::max(cost.triangle_roundoff, cost.quadric_roundoff)
                                                     : cost.quadric_roundoff;
   return roundings * u * (scene.extent + way + lost);
@@ -80,12 +81,21 @@ Choice tracer_choice(const std::vector<Candidate>& sorted, const Tolerance& tole
   return c;
 }
 
+/// The variant that is run for the quadrics of one type.
+std::string kernel_name(QuadricType type, const QuadricTraits& traits) {
+  if (type == QuadricType::sphere && traits.balls) return "ball";
+  std::string name(to_string(type));
+  const bool may_be_clipped = type <= QuadricType::hyperboloid2, may_be_capped = may_be_clipped && type > QuadricType{};
+  if (may_be_clipped && !traits.clipped) return name + " unclipped";
+  return may_be_capped && !traits.capped ? name + " uncapped" : name;
+}
+
 Choice kernel_choice(const SceneStatistics& scene) {
   std::string list = scene.triangles > 0 ? "triangle" : "";
   for (std::size_t i = 0; i < quadric_type_count; ++i)
-    if (scene.quadrics_of[i] > 0)
-      list += (list.empty() ? "" : ", ") + std::string(to_string(static_cast<QuadricType>(i)));
-  return {"kernels", list, -1, -1, "one for all quadrics", -1, -1, "those of the types that the scene holds"};
+    if (scene.traits[i].any)
+      list += (list.empty() ? "" : ", ") + kernel_name(static_cast<QuadricType>(i), scene.traits[i]);
+  return {"kernels", list, -1, -1, "one for all quadrics", -1, -1, "what the quadrics of the scene need, and no more"};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "accel/frame.h"
 #include "accel/random.h"
 #include "cpu/bvh_tracer.h"
 #include "engine/query.h"
@@ -18,13 +19,12 @@ constexpr std::size_t most_examples = 8;
 
 /// Rays about one, up to a distance from it that grows along it as a pixel does, or does not.
 std::vector<Ray> beside(const Ray& ray, double distance, Tolerance::Unit unit) {
-  const glm::dvec3 aside = std::abs(ray.direction.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 right = glm::normalize(glm::cross(ray.direction, aside)), up = glm::cross(right, ray.direction);
+  const glm::dmat3 frame = frame_about(ray.direction);
   std::vector<Ray> rays;
   for (int ring = 1; ring <= rings; ++ring)
     for (int i = 0; i < directions; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5 * (ring % 2)) / directions;
-      const glm::dvec3 move = distance * ring / rings * (std::cos(angle) * right + std::sin(angle) * up);
+      const glm::dvec3 move = distance * ring / rings * (std::cos(angle) * frame[0] + std::sin(angle) * frame[1]);
       Ray other = ray;
       (unit == Tolerance::Unit::pixels ? other.direction : other.origin) += move;
       rays.push_back(other);
@@ -35,12 +35,10 @@ std::vector<Ray> beside(const Ray& ray, double distance, Tolerance::Unit unit) {
 class Verifier {
  public:
   Verifier(const Scene& scene, const Scene& model, const Tolerance& tolerance)
-      : scene_(scene),
-        model_(model),
+      : model_(model),
         tolerance_(tolerance),
-        oracle_(make_bvh_tracer(scene.geometry, Precision::certified)) {
-    pixel_ = pixel_angle(scene.camera);
-  }
+        oracle_(make_bvh_tracer(scene.geometry, Precision::certified)),
+        pixel_(pixel_angle(scene.camera)) {}
 
   Verification run(Tracer& tracer, std::span<const Ray> rays) {
     std::vector<Hit> hits(rays.size()), exact(rays.size());
@@ -93,11 +91,10 @@ class Verifier {
   /// The tolerance's unit, as a length at a distance along a ray.
   double unit_at(double t) const { return tolerance_.unit == Tolerance::Unit::pixels ? pixel_ * t : 1; }
 
-  const Scene& scene_;
   const Scene& model_;
   Tolerance tolerance_;
   std::unique_ptr<Tracer> oracle_;
-  double pixel_ = 0;
+  double pixel_;
   Verification result_;
 };
 

@@ -3,11 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 
+#include "accel/frame.h"
 #include "accel/random.h"
 #include "accel/ray_cone.h"
 #include "engine/query.h"
@@ -63,13 +63,6 @@ Sphere around(const std::vector<Sphere>& spheres) {
   return all;
 }
 
-/// Two unit vectors that are perpendicular to a unit vector and to each other. Source: Duff et al., "Building an
-/// Orthonormal Basis, Revisited" (2017).
-std::array<glm::dvec3, 2> basis(const glm::dvec3& n) {
-  const double sign = std::copysign(1, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  return {glm::dvec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y)};
-}
-
 /// Van der Corput's sequence in base 2.
 double reversed_bits(std::uint32_t i) {
   i = (i << 16) | (i >> 16);
@@ -100,14 +93,14 @@ class Beam {
     const bool within = spreads_ && distance <= target.radius;
     axis_ = !spreads_ ? glm::normalize(light.direction) : within ? glm::dvec3(0, 0, 1) : way / distance;
     cosine_ = within ? -1 : std::sqrt(std::max(0.0, 1 - std::pow(target.radius / distance, 2)));
-    across_ = basis(axis_);
+    frame_ = frame_about(axis_);
     const double measure = spreads_ ? 2 * (1 - cosine_) : target.radius * target.radius;
     power_ = light.color * static_cast<float>(std::numbers::pi * measure / static_cast<double>(photons));
   }
 
   Flight photon(std::uint32_t i) const {
     const double share = (i + 0.5) / static_cast<double>(photons_), turn = 2 * std::numbers::pi * reversed_bits(i);
-    const glm::dvec3 side = std::cos(turn) * across_[0] + std::sin(turn) * across_[1];
+    const glm::dvec3 side = std::cos(turn) * frame_[0] + std::sin(turn) * frame_[1];
     const double cosine = 1 - share * (1 - cosine_), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     Flight f{.power = power_, .spreads = spreads_, .number = i};
     f.ray.direction = spreads_ ? glm::normalize(cosine * axis_ + sine * side) : axis_;
@@ -124,7 +117,7 @@ class Beam {
   bool spreads_;
   glm::dvec3 axis_{0};
   double cosine_ = 0;
-  std::array<glm::dvec3, 2> across_{};
+  glm::dmat3 frame_{1};
   glm::vec3 power_{0};
 };
 

@@ -192,8 +192,8 @@ Json PlannedScene::json() const {
 }
 
 void measure_machine(const Common& common) {
-  DeviceMeasurements device = measure_device(common.threads);
-  device.simplify = clustering_seconds / thread_count(common.threads);
+  const DeviceMeasurements device =
+      measure_device(common.threads, [](const Mesh& mesh, double distance) { simplify(mesh, distance, 0); });
   const std::string text = to_text(device);
   const fs::path file = device_file();
   if (file.empty() || !write_cache_file(file, {std::as_bytes(std::span(text))}))

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -68,20 +67,12 @@ std::uint32_t type_of(const Quadric& q) { return static_cast<std::uint32_t>(q.ty
 std::vector<KernelType> types_in(const Geometry& g) {
   std::vector<KernelType> types;
   if (!g.triangles.empty()) types.push_back(TreeletPrimitive::triangle);
-  std::array<std::optional<KernelType>, quadric_type_count> found;
-  for (const Quadric& q : g.quadrics) {
-    auto& type = found[type_of(q)];
-    if (!type) {
-      type = type_of(q);
-      type->clipped = type->capped = false;
-      type->balls = true;
-    }
-    type->clipped |= !is_ball(q) && (q.zmin > -infinity || q.zmax < infinity);
-    type->capped |= q.capped;
-    type->balls &= is_ball(q);
+  TraitsByType traits{};
+  add_traits(traits, g.quadrics);
+  for (std::uint32_t i = 0; i < traits.size(); ++i) {
+    const QuadricTraits& t = traits[i];
+    if (t.any) types.push_back({i, t.clipped, t.capped, t.balls});
   }
-  for (const auto& type : found)
-    if (type) types.push_back(*type);
   return types;
 }
 

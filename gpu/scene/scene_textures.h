@@ -11,12 +11,13 @@ namespace rayengine {
 
 /// A kind of primitive that has an intersection shader of its own, and what those of the scene need of it.
 struct KernelType {
-  std::uint32_t primitive = 0;  ///< TreeletPrimitive::triangle, or a QuadricType
-  bool clipped = true;          ///< whether any of these quadrics may be, by planes across z
-  bool capped = true;
-  bool balls = false;  ///< whether all of them are is_ball()
+  std::uint32_t primitive;  ///< TreeletPrimitive::triangle, or a QuadricType
+  bool clipped;             ///< whether any of these quadrics may be, by planes across z
+  bool capped;
+  bool balls;  ///< whether all of them are is_ball()
 
-  KernelType(std::uint32_t primitive) : primitive(primitive) {}
+  KernelType(std::uint32_t primitive, bool clipped = true, bool capped = true, bool balls = false)
+      : primitive(primitive), clipped(clipped), capped(capped), balls(balls) {}
   friend bool operator==(const KernelType& type, std::uint32_t primitive) { return type.primitive == primitive; }
 };
 

@@ -95,7 +95,7 @@ int main(int count, char** arguments) {
       {{"as it is", [](const Mesh& m, double) { return m; }},
        {"simplified", [](const Mesh& m, double t) { return simplify(m, t).mesh; }},
        {"from the cache", [](const Mesh& m, double t) { return simplify_cached(m, t).mesh; }}}};
-  const Simplified simplified = simplify_cached(mesh, tolerance);
+  const CoarserMesh simplified = simplify_cached(mesh, tolerance);
   std::array<std::vector<Cost>, 3> costs;
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < ways.size(); ++i)

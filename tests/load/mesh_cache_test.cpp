@@ -35,7 +35,7 @@ class MeshCache : public testing::Test {
   static constexpr double tolerance = 0.1;
 };
 
-void expect_same(const Simplified& a, const Simplified& b) {
+void expect_same(const CoarserMesh& a, const CoarserMesh& b) {
   EXPECT_EQ(a.mesh.positions, b.mesh.positions);
   EXPECT_EQ(a.mesh.normals, b.mesh.normals);
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
@@ -44,7 +44,7 @@ void expect_same(const Simplified& a, const Simplified& b) {
 
 TEST_F(MeshCache, GivesTheSameTheSecondTime) {
   EXPECT_FALSE(find_simplified(sphere_, tolerance));
-  const Simplified first = simplify_cached(sphere_, tolerance);
+  const CoarserMesh first = simplify_cached(sphere_, tolerance);
   EXPECT_LT(first.mesh.triangles.size(), sphere_.triangles.size());
   ASSERT_EQ(files().size(), 1u);
   const auto found = find_simplified(sphere_, tolerance);
@@ -57,14 +57,14 @@ TEST_F(MeshCache, GivesTheSameTheSecondTime) {
 TEST_F(MeshCache, KeepsNormals) {
   Mesh mesh = sphere_;
   for (const glm::dvec3& p : mesh.positions) mesh.normals.push_back(glm::vec3(p));
-  const Simplified first = simplify_cached(mesh, tolerance);
+  const CoarserMesh first = simplify_cached(mesh, tolerance);
   EXPECT_FALSE(first.mesh.normals.empty());
   expect_same(find_simplified(mesh, tolerance).value(), first);
   EXPECT_FALSE(find_simplified(sphere_, tolerance));
 }
 
 TEST_F(MeshCache, RemembersThatThereIsNothingToDrop) {
-  const Simplified same = simplify_cached(sphere_, 1e-9);
+  const CoarserMesh same = simplify_cached(sphere_, 1e-9);
   EXPECT_EQ(same.distance, 0);
   EXPECT_LT(fs::file_size(files().at(0)), 200u);
   expect_same(find_simplified(sphere_, 1e-9).value(), same);
@@ -86,7 +86,7 @@ TEST_F(MeshCache, RefusesTolerancesThatAreNone) {
 }
 
 TEST_F(MeshCache, ReplacesTruncatedFiles) {
-  const Simplified first = simplify_cached(sphere_, tolerance);
+  const CoarserMesh first = simplify_cached(sphere_, tolerance);
   const fs::path file = files().at(0);
   const std::uintmax_t whole = fs::file_size(file);
   for (const std::uintmax_t size : {whole - 1, whole / 2, std::uintmax_t{20}, std::uintmax_t{0}}) {
@@ -98,7 +98,7 @@ TEST_F(MeshCache, ReplacesTruncatedFiles) {
 }
 
 TEST_F(MeshCache, TakesNoDamagedFileForAGoodOne) {
-  const Simplified first = simplify_cached(sphere_, tolerance);
+  const CoarserMesh first = simplify_cached(sphere_, tolerance);
   const fs::path file = files().at(0);
   const std::uintmax_t size = fs::file_size(file);
   for (std::uintmax_t at = 0; at < size; at += 1 + size / 97) {  // header, arrays and hash
@@ -117,7 +117,7 @@ TEST_F(MeshCache, TakesNoDamagedFileForAGoodOne) {
 }
 
 TEST_F(MeshCache, DoesWithoutAFolder) {
-  const Simplified first = simplify(sphere_, tolerance);
+  const CoarserMesh first = simplify(sphere_, tolerance);
   const fs::path plain = cache_.write("plain", "a file, no folder");
   setenv("XDG_CACHE_HOME", plain.c_str(), 1);
   expect_same(simplify_cached(sphere_, tolerance), first);

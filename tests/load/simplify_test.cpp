@@ -56,8 +56,8 @@ double farthest(Mesh from, Mesh to, std::size_t count) {
 }
 
 /// Expects every promise of simplify, and gives what came out.
-Simplified expect_kept(const Mesh& mesh, double tolerance, std::size_t count = 200) {
-  const Simplified result = simplify(mesh, tolerance);
+CoarserMesh expect_kept(const Mesh& mesh, double tolerance, std::size_t count = 200) {
+  const CoarserMesh result = simplify(mesh, tolerance);
   EXPECT_LE(result.distance, tolerance);
   EXPECT_LE(result.mesh.triangles.size(), mesh.triangles.size());
   EXPECT_EQ(result.mesh.normals.size(), mesh.normals.empty() ? 0 : result.mesh.positions.size());
@@ -114,7 +114,7 @@ TEST(Simplify, RefusesBrokenMeshes) {
 TEST(Simplify, LeavesWhatHasNothingToDrop) {
   Mesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
   for (const Mesh& mesh : {tetrahedron, Mesh{}, Mesh{{{0, 0, 0}}, {}, {}}}) {
-    const Simplified same = simplify(mesh, 1e-3);
+    const CoarserMesh same = simplify(mesh, 1e-3);
     EXPECT_EQ(same.distance, 0);
     EXPECT_EQ(same.mesh.positions, mesh.positions);
     EXPECT_EQ(same.mesh.triangles, mesh.triangles);
@@ -128,7 +128,7 @@ TEST(Simplify, DropsTheSmallTrianglesOfASphere) {
 
 TEST(Simplify, ClustersWhatIsTooMuchForTheDecimater) {
   const Mesh sphere = subdivided_sphere(6);  // 32,768 triangles
-  const Simplified clustered = simplify(sphere, 0.06, 0);
+  const CoarserMesh clustered = simplify(sphere, 0.06, 0);
   EXPECT_LT(clustered.mesh.triangles.size(), sphere.triangles.size() / 10);
   EXPECT_LE(farthest(sphere, clustered.mesh, 100), clustered.distance);
   EXPECT_LE(farthest(clustered.mesh, sphere, 100), clustered.distance);
@@ -136,7 +136,7 @@ TEST(Simplify, ClustersWhatIsTooMuchForTheDecimater) {
 
 TEST(Simplify, KeepsTheCornersAndEdgesOfAnOpenSheet) {
   const Mesh sheet = flat_sheet(40);
-  const Simplified result = expect_kept(sheet, 0.015, 1000);
+  const CoarserMesh result = expect_kept(sheet, 0.015, 1000);
   EXPECT_LT(result.mesh.triangles.size(), 200u);
   for (const glm::dvec3& corner : {glm::dvec3(0, 0, 0), {1, 0, 0}, {0, 1, 0}, {1, 1, 0}})
     EXPECT_LE(distance(corner, result.mesh), result.distance);
@@ -147,7 +147,7 @@ TEST(Simplify, FillsNoHolesThatAreWiderThanTheTolerance) {
   std::erase_if(holed.triangles, [&](const glm::uvec3& t) {
     return glm::length(holed.positions[t.x] - glm::dvec3(0.5, 0.5, 0)) < 0.15;
   });
-  const Simplified result = expect_kept(holed, 0.03, 1000);
+  const CoarserMesh result = expect_kept(holed, 0.03, 1000);
   EXPECT_LT(result.mesh.triangles.size(), holed.triangles.size() / 4);
   EXPECT_GT(distance({0.5, 0.5, 0}, result.mesh), 0.1);
 }
@@ -155,7 +155,7 @@ TEST(Simplify, FillsNoHolesThatAreWiderThanTheTolerance) {
 TEST(Simplify, KeepsShellsApartThatAreFartherThanTheTolerance) {
   Mesh shells = flat_sheet(40);
   append(shells, flat_sheet(40), {0, 0, 0.07});
-  const Simplified result = expect_kept(shells, 0.03);
+  const CoarserMesh result = expect_kept(shells, 0.03);
   for (const glm::dvec3& p : result.mesh.positions) EXPECT_TRUE(p.z == 0 || p.z == 0.07) << p.z;
   expect_kept(shells, 0.2);  // within the tolerance they may be one
 }
@@ -190,7 +190,7 @@ TEST(Simplify, KeepsNonManifoldFaces) {
     fins.positions.push_back({(x + 0.5) / 40, 0.5, 0.3});
     fins.triangles.push_back({20 * 41 + x, 20 * 41 + x + 1, at});
   }
-  const Simplified result = expect_kept(fins, 0.005, 1000);
+  const CoarserMesh result = expect_kept(fins, 0.005, 1000);
   EXPECT_LE(distance({0.5 / 40, 0.5, 0.3}, result.mesh), result.distance);
 }
 
@@ -218,7 +218,7 @@ TEST(Simplify, IsAsGoodFarOffAsNear) {
   const std::size_t count = simplify(near, 0.05).mesh.triangles.size();
   for (const double far : {1e6, 1e9}) {
     const Mesh mesh = moved(near, {far, -far, far});
-    const Simplified result = expect_kept(mesh, 0.05);
+    const CoarserMesh result = expect_kept(mesh, 0.05);
     EXPECT_LT(result.mesh.triangles.size(), 2 * count);
   }
   expect_kept(moved(near, {1e15, 0, 0}), 0.05);  // where positions are steps of an eighth
@@ -240,14 +240,14 @@ TEST(Simplify, LeavesWhatATinyToleranceCannotTell) {
 TEST(Simplify, CarriesNormalsWithTheirVertices) {
   Mesh mesh = subdivided_sphere(5);
   for (const glm::dvec3& p : mesh.positions) mesh.normals.push_back(glm::vec3(p));
-  const Simplified result = expect_kept(mesh, 0.02);
+  const CoarserMesh result = expect_kept(mesh, 0.02);
   ASSERT_LT(result.mesh.positions.size(), mesh.positions.size());
   for (std::size_t i = 0; i < result.mesh.positions.size(); ++i)
     EXPECT_EQ(result.mesh.normals[i], glm::vec3(result.mesh.positions[i]));
 }
 
 TEST(Simplify, FacesAsBefore) {
-  const Simplified result = simplify(subdivided_sphere(5), 0.04);
+  const CoarserMesh result = simplify(subdivided_sphere(5), 0.04);
   for (const glm::uvec3& t : result.mesh.triangles) {
     const Corners c = corners(result.mesh.positions, t);
     EXPECT_GT(glm::dot(glm::cross(c[1] - c[0], c[2] - c[0]), c[0]), 0);
@@ -256,7 +256,7 @@ TEST(Simplify, FacesAsBefore) {
 
 TEST(Simplify, IsTheSameEachTime) {
   const Mesh sphere = subdivided_sphere(6);
-  const Simplified a = simplify(sphere, 0.01), b = simplify(sphere, 0.01);
+  const CoarserMesh a = simplify(sphere, 0.01), b = simplify(sphere, 0.01);
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
   EXPECT_EQ(a.mesh.positions, b.mesh.positions);
   EXPECT_EQ(a.distance, b.distance);

@@ -19,6 +19,7 @@
 #include "engine/plan/verify.h"
 #include "engine/tracers.h"
 #include "tests/data.h"
+#include "tests/eager_device.h"
 #include "tests/temporary.h"
 
 namespace rayengine {
@@ -143,36 +144,31 @@ TEST_P(Scenes, AreTheSameForEveryTracer) {
     compare_all(*make_tracer(name, scene.geometry), oracle, scene, sets);
 }
 
-/// A machine on which triangles cost so much that all are replaced that can be.
-DeviceMeasurements eager_device() {
-  DeviceMeasurements device = usual_device();
-  for (TracerCost& cost : device.tracers) cost.triangle.build *= 1000;
-  return device;
-}
-
 /// What a plan makes of a scene, whatever the making costs, against exact arithmetic on the scene as it was given.
 TEST_P(Scenes, KeepToATolerance) {
   if (file().empty()) GTEST_SKIP() << "no " << GetParam() << " in " << test::data_folder() << ": set RAYENGINE_DATA";
   const test::TemporaryFolder cache;
   setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
-  const DeviceMeasurements device = eager_device();
+  const DeviceMeasurements device = test::eager_device();
   Scene scene = load_scene(file());
   scene.camera.size = {side, side};  // few pixels are large ones: there is more to be replaced
   const std::vector<Ray> rays = random_camera_rays(scene.camera, 2000);
-  for (const double pixels : {0., 0.1, 1.}) {
-    const Tolerance tolerance{pixels};
-    const Planned planned = plan_scene(scene, {.tolerance = tolerance,
-                                               .rays = expected_rays(scene, 1),
-                                               .effort = {true, true},
-                                               .simplifier = cached_simplifier()});
-    const Scene& model = planned.model.scene;
-    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
-    const Verification found = verify(scene, model, *tracer, tolerance, rays);
-    std::printf("%.1f pixels: %zu objects replaced, %llu of %llu rays agree beside, at most %.2g off\n", pixels,
-                planned.model.replaced.size(), static_cast<unsigned long long>(found.beside),
-                static_cast<unsigned long long>(found.rays), found.largest);
-    EXPECT_EQ(found.broken, 0u) << pixels;
-  }
+  for (const Effort& effort : {Effort{.simplify = true}, Effort{.recognise = true}})
+    for (const double pixels : {0., 0.1, 1.}) {
+      const Tolerance tolerance{pixels};
+      const Planned planned = plan_scene(scene, {.tolerance = tolerance,
+                                                 .rays = expected_rays(scene, 1),
+                                                 .effort = effort,
+                                                 .simplifier = cached_simplifier(),
+                                                 .device = &device});
+      const Scene& model = planned.model.scene;
+      const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+      const Verification found = verify(scene, model, *tracer, tolerance, rays);
+      std::printf("%.1f pixels: %zu objects replaced, %llu of %llu rays agree beside, at most %.2g off\n", pixels,
+                  planned.model.replaced.size(), static_cast<unsigned long long>(found.beside),
+                  static_cast<unsigned long long>(found.rays), found.largest);
+      EXPECT_EQ(found.broken, 0u) << pixels;
+    }
 }
 
 }  // namespace

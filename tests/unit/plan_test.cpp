@@ -15,6 +15,7 @@
 #include "engine/plan/planned.h"
 #include "engine/plan/verify.h"
 #include "engine/tracers.h"
+#include "tests/eager_device.h"
 
 namespace rayengine {
 namespace {
@@ -167,7 +168,7 @@ TEST(Patches, KnowBallsFromTubesAndFromNeither) {
   const auto look = [](const QuadricShape& shape, const Affine& map) {
     GeometryBuilder builder;
     builder.add(shape, 0, map);
-    return look_at_patches(*tessellate(*builder.build(), 4)->geometry, 0);
+    return look_at_patches(*tessellate(*builder.build(), 4)->geometry, 0, 24);
   };
   const Affine somewhere = Affine::translate({100, 20, 3}) * Affine::scale({1, 2, 0.5});
   EXPECT_GT(look({}, somewhere).ball_share, 0.9);
@@ -178,7 +179,7 @@ TEST(Patches, KnowBallsFromTubesAndFromNeither) {
   for (glm::dvec3& p : bumpy.positions) p *= 1 + 0.01 * std::sin(40 * p.x) * std::sin(37 * p.y) * std::sin(41 * p.z);
   GeometryBuilder builder;
   builder.add(bumpy);
-  EXPECT_LT(look_at_patches(*builder.build(), 0).quadric_share, 0.2);
+  EXPECT_LT(look_at_patches(*builder.build(), 0, 24).quadric_share, 0.2);
 }
 
 TEST(PlannedScene, PutsBallsInPlaceOfTriangles) {
@@ -221,21 +222,13 @@ Mesh pipe(std::uint32_t segments, double inner) {
   return mesh;
 }
 
-/// A machine on which triangles cost so much that all are replaced that can be.
-DeviceMeasurements eager_device() {
-  DeviceMeasurements device = usual_device();
-  device.recognise_parts = 0;
-  for (TracerCost& cost : device.tracers) cost.triangle.build *= 1e6;
-  return device;
-}
-
 TEST(PlannedScene, HasNoCracksBetweenQuadricsAndTriangles) {
   Scene scene;
   GeometryBuilder builder;
   builder.add(pipe(96, 0.7));
   scene.geometry = builder.build();
   scene.camera = {.from = {3, 0.5, 20}, .at = {0, 0, 1}, .up = {0, 1, 0}, .fov = 7, .size = {512, 512}};
-  const DeviceMeasurements device = eager_device();
+  const DeviceMeasurements device = test::eager_device();
   const Planned planned = plan_scene(scene, {.tolerance = half_pixel, .rays = 1e6, .device = &device});
   ASSERT_EQ(planned.model.replaced.size(), 1u);
   const auto tracer = make_tracer("bvh", planned.model.scene.geometry);
@@ -265,7 +258,7 @@ Scene repeated_balls() {
 
 TEST(PlannedScene, HoldsMeshesOnceThatRepeat) {
   const Scene scene = repeated_balls();
-  const DeviceMeasurements device = eager_device();
+  const DeviceMeasurements device = test::eager_device();
   for (const Tolerance& tolerance : {exact, half_pixel}) {
     const Planned planned = plan_scene(scene, {.tolerance = tolerance, .rays = 1e5, .device = &device});
     const Scene& model = planned.model.scene;

@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "accel/frame.h"
 #include "engine/plan/recognise/candidate.h"
 
 namespace rayengine::surfaces {
@@ -61,18 +62,20 @@ struct Cloud {
   glm::dvec3 world(const glm::dvec3& p) const { return mean + extent * p; }
 };
 
+/// Enough of a region to fit to.
+struct Sample {
+  std::vector<std::uint32_t> triangles;
+  Patch patch;
+  Cloud cloud;
+
+  explicit Sample(const Region& region) : triangles(thinned(region)), patch{region.mesh, triangles}, cloud(patch) {}
+  Sample(const Sample&) = delete;
+  Sample& operator=(const Sample&) = delete;
+};
+
 /// What a quadric's ten coefficients are multiplied with, those off the diagonal taken twice.
 inline std::array<double, 10> monomials(const glm::dvec3& p) {
   return {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.x * p.z, p.y * p.z, p.x, p.y, p.z, 1};
-}
-
-/// Right-handed and at right angles, with the unit vector `axis` as the third.
-inline glm::dmat3 frame(const glm::dvec3& axis) {
-  const glm::dvec3 size = glm::abs(axis);
-  glm::dvec3 away(0);
-  away[size.x <= size.y ? (size.x <= size.z ? 0 : 2) : (size.y <= size.z ? 1 : 2)] = 1;
-  const glm::dvec3 u = glm::normalize(glm::cross(away, axis));
-  return {u, glm::cross(axis, u), axis};
 }
 
 }  // namespace rayengine::surfaces

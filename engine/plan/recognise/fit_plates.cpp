@@ -77,14 +77,13 @@ std::optional<Candidate> rectangle(const Region& region, const Cloud& cloud, con
 }  // namespace
 
 std::vector<Candidate> fit_plates(const Region& region) {
-  const std::vector<std::uint32_t> few = thinned(region);
-  const Patch patch{region.mesh, few};
-  const Cloud cloud(patch);
+  const Sample sample(region);
+  const auto& [few, patch, cloud] = sample;
   if (!cloud.usable()) return {};
   const glm::dvec3 normal = mean_normal(patch, cloud.extent);
   if (!(glm::length(normal) > 0) || !is_flat(patch, cloud, normal)) return {};
   std::vector<Candidate> result;
-  if (const auto c = disk(region, cloud, frame(normal))) result.push_back(*c);
+  if (const auto c = disk(region, cloud, frame_about(normal))) result.push_back(*c);
   if (const auto c = rectangle(region, cloud, normal)) result.push_back(*c);
   return result;
 }

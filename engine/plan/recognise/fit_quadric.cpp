@@ -183,9 +183,8 @@ class Classifier {
 }  // namespace
 
 std::optional<Candidate> fit_quadric(const Region& region) {
-  const std::vector<std::uint32_t> few = thinned(region);
-  const Patch patch{region.mesh, few};
-  const Cloud cloud(patch);
+  const Sample sample(region);
+  const auto& [few, patch, cloud] = sample;
   if (!cloud.usable()) return {};
   const std::optional<Form> form = least_squares(patch, cloud);
   if (!form) return {};

@@ -10,9 +10,8 @@ namespace rayengine::surfaces {
 // |p|^2 = 2 c.p + k is linear in the centre c and in k = r^2 - |c|^2; about the mean of the points k separates. Source:
 // Coope, "Circle fitting by linear and nonlinear least squares" (1993), in three dimensions.
 std::optional<Candidate> fit_sphere(const Region& region) {
-  const std::vector<std::uint32_t> few = thinned(region);
-  const Patch patch{region.mesh, few};
-  const Cloud points(patch);
+  const Sample sample(region);
+  const auto& [few, patch, points] = sample;
   if (!points.usable()) return {};
   const double count = 3. * static_cast<double>(few.size());
   Matrix<3> m{};

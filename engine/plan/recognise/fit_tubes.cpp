@@ -49,7 +49,7 @@ glm::dvec3 rounded(const glm::dvec3& p, double allowance) {
 Candidate cylinder(const Cloud& cloud, const Tube& tube, const Ends& e, double allowance) {
   const double radius = round_number(cloud.extent * tube.radius, allowance);
   const double length = round_number(cloud.extent * (e.high - e.low), allowance);
-  const glm::dmat3 turn = frame(tube.axis);
+  const glm::dmat3 turn = frame_about(tube.axis);
   Candidate c;
   c.type = QuadricType::cylinder;
   c.clip = {0, 1};
@@ -67,7 +67,7 @@ std::optional<Candidate> cone(const Cloud& cloud, Tube tube, Ends e, double allo
   const double apex = -tube.radius / tube.slope, length = e.high - apex;
   if (!(length < farthest_apex * (e.high - e.low))) return {};
   const double radius = tube.slope * length, cut = (e.low - apex) / length;
-  const glm::dmat3 turn = frame(tube.axis);
+  const glm::dmat3 turn = frame_about(tube.axis);
   Candidate c;
   c.type = QuadricType::cone;
   c.clip = {radius * std::abs(cut) * cloud.extent <= 2 * allowance ? 0 : cut, 1};
@@ -99,9 +99,8 @@ Candidate sector(const Region& region, Candidate c) {
 }  // namespace
 
 std::vector<Candidate> fit_tubes(const Region& region) {
-  const std::vector<std::uint32_t> few = thinned(region);
-  const Patch patch{region.mesh, few};
-  const Cloud cloud(patch);
+  const Sample sample(region);
+  const auto& [few, patch, cloud] = sample;
   if (!cloud.usable()) return {};
   std::vector<FittedTube> tubes = fit_cylinder_and_cones(patch, cloud);
   // A cylinder is the simpler thing: it stands unless a cone is much nearer.

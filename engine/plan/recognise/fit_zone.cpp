@@ -41,7 +41,7 @@ std::optional<Candidate> fit_zone(const Region& region) {
   std::optional<Candidate> found = fit_sphere(region);
   if (!found || !is_invertible(found->to_world)) return {};
   const double radius = found->to_world.linear[0][0];
-  found->to_world.linear = radius * frame(axis_of_outline(region, radius));
+  found->to_world.linear = radius * frame_about(axis_of_outline(region, radius));
   const Rings r = rings(region, inverse(found->to_world));
   if (!(r.low <= r.high && std::abs(r.low) < 1 && std::abs(r.high) < 1)) return {};
   constexpr double one_ring = 1e-3;

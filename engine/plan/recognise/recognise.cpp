@@ -29,12 +29,6 @@ constexpr std::array angles{50., 20., 7.};
 /// Degrees by which neighbours in one plane may differ, as rounded coordinates make them.
 constexpr double flat = 0.1;
 
-void check_input(const Mesh& mesh, double tolerance) {
-  if (!(tolerance > 0 && std::isfinite(tolerance)))
-    throw Error("a tolerance of " + std::to_string(tolerance) + " cannot be kept: give one that is finite and above 0");
-  check_mesh(mesh);
-}
-
 /// What a region may be, and the bound if it is.
 struct Verdict {
   Candidate candidate;
@@ -214,7 +208,7 @@ class Recogniser {
 }  // namespace
 
 Recognition recognise(const Mesh& mesh, double tolerance, Pieces pieces) {
-  check_input(mesh, tolerance);
+  check_mesh(mesh, tolerance);
   if (mesh.triangles.size() >= no_id / 3)
     throw Error("a mesh of " + std::to_string(mesh.triangles.size()) +
                 " triangles has too many to number its edges: cut it in two");

@@ -41,7 +41,7 @@ std::optional<GaussMap> gauss_map(const Patch& patch, double extent) {
 
 /// The circle about an axis through the origin that is nearest to the points seen along it, by linear least squares.
 std::optional<Tube> first_guess(const Patch& patch, const Cloud& cloud, const glm::dvec3& axis, double slope) {
-  const glm::dmat3 turn = frame(axis);
+  const glm::dmat3 turn = frame_about(axis);
   Matrix<3> m{};
   Vector<3> b{};
   each_corner(patch, [&](const glm::dvec3& at) {
@@ -78,7 +78,7 @@ Vector<N> derivatives(const Tube& tube, const glm::dvec3& p, double distance) {
 /// False, and nothing changes, where the corners leave open what the step is to be.
 template <Step N>
 bool refine(const Patch& patch, const Cloud& cloud, Tube& tube) {
-  const glm::dmat3 turn = frame(tube.axis);
+  const glm::dmat3 turn = frame_about(tube.axis);
   Matrix<N> m{};
   Vector<N> b{};
   each_corner(patch, [&](const glm::dvec3& at) {
