@@ -6,15 +6,14 @@
 #include "accel/geometry.h"
 #include "accel/norms.h"
 #include "accel/ray.h"
+#include "accel/solve_formulas.h"
 
 // A hit's primitive solved again in double, with a running bound on every rounding. Shared by surface.cpp and the two
 // kinds of primitives; not for callers.
 namespace rayengine {
 
-inline constexpr double roundoff = 0x1p-53;
-
-/// A bound for n roundings in a row (Higham, "Accuracy and Stability of Numerical Algorithms", lemma 3.1).
-constexpr double gamma(int n) { return n * roundoff / (1 - n * roundoff); }
+inline formulas::Vec<double> kernel_vec(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+inline glm::dvec3 glm_vec(const formulas::Vec<double>& v) { return {v.x, v.y, v.z}; }
 
 /// A vector's direction, and one over its length. Zero has the direction zero, and an infinite second.
 struct Direction {
@@ -24,7 +23,7 @@ struct Direction {
 
 inline Direction normalised(const glm::dvec3& v) {
   const double square = glm::dot(v, v);
-  if (square > 1e-280 && square < 1e280) {
+  if (formulas::is_regular(square)) {
     const double per_length = 1 / std::sqrt(square);
     return {per_length * v, per_length};
   }
@@ -37,14 +36,12 @@ inline Direction normalised(const glm::dvec3& v) {
 
 inline glm::dvec3 unit(const glm::dvec3& v) { return normalised(v).unit; }
 
-/// A ray in the space of the primitive's geometry, and what taking it there made unsure.
-struct LocalRay {
-  glm::dvec3 origin, direction;
-  glm::dvec3 origin_error{0}, direction_error{0};
-};
+/// A ray in the space of the primitive's geometry.
+using GroupRay = formulas::LocalRay<double>;
 
-/// `ray` taken through a map: five roundings a component, on top of what it brought along.
-LocalRay transformed(const LocalRay& ray, const WorldToObject& map);
+inline formulas::Map<double> map_of(const WorldToObject& map) {
+  return {kernel_vec(map.linear[0]), kernel_vec(map.linear[1]), kernel_vec(map.linear[2]), kernel_vec(map.origin)};
+}
 
 struct Solution {
   double t = 0;
@@ -56,10 +53,10 @@ struct Solution {
 };
 
 /// The crossing with the triangle's plane; at `t_guess` where it is seen edge-on.
-Solution solve_triangle(const PrimitiveRef& ref, const LocalRay& ray, double t_guess);
+Solution solve_triangle(const PrimitiveRef& ref, const GroupRay& ray, double t_guess);
 
 /// The crossing with a quadric's side that `t_guess` is nearest to, or with the plane of its cap.
-Solution solve_quadric(const PrimitiveRef& ref, const LocalRay& ray, double t_guess);
+Solution solve_quadric(const PrimitiveRef& ref, const GroupRay& ray, double t_guess);
 
 /// A normal of the geometry that holds the primitive, taken to world space; not normalised.
 inline glm::dvec3 to_world(const Instance* instance, const glm::dvec3& normal) {

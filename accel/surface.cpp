@@ -5,9 +5,11 @@
 namespace rayengine {
 namespace {
 
+GroupRay world_ray(const Ray& ray) { return {kernel_vec(ray.origin), kernel_vec(ray.direction)}; }
+
 Solution solve(const PrimitiveRef& ref, const Ray& ray, double t_guess) {
-  LocalRay local{ray.origin, ray.direction};
-  if (ref.instance) local = transformed(local, ref.instance->to_group);
+  GroupRay local = world_ray(ray);
+  if (ref.instance) local = formulas::transformed(local, map_of(ref.instance->to_group));
   return ref.is_triangle() ? solve_triangle(ref, local, t_guess) : solve_quadric(ref, local, t_guess);
 }
 
@@ -26,18 +28,15 @@ Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const PrimitiveRef ref = resolve(geometry, hit.object, hit.primitive);
   const Solution s = solve(ref, ray, hit.t);
   Surface result;
-  result.position = ray.at(s.t);
+  const auto place = formulas::place_at(world_ray(ray), s.t, s.distance, s.error);
+  result.position = glm_vec(place.position);
+  result.error = place.error;
   result.normal = result.shading_normal = s.normal;
   result.is_triangle = ref.is_triangle();
   if (result.is_triangle && !ref.geometry->normals.empty())
     if (const glm::dvec3 n = interpolated_normal(ref, s.barycentrics); n != glm::dvec3(0)) result.shading_normal = n;
   result.magnitude = std::max(s.magnitude, largest_component(result.position));
   result.spread = s.spread;
-  // Of the two bounds on the distance each is infinite where the surface is singular or seen edge-on. The position
-  // itself is rounded: a product and a sum of numbers no larger than these.
-  const double distance = std::min(s.distance, s.error * sum_abs(ray.direction));
-  const double rounding = gamma(2) * (largest_component(ray.origin) + std::abs(s.t) * largest_component(ray.direction));
-  result.error = (std::isfinite(distance) ? distance : 0) + 2 * rounding;
   result.material = ref.geometry->objects[ref.object].material;
   return result;
 }

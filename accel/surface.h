@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "accel/geometry.h"
 #include "accel/ray.h"
 
@@ -20,6 +22,10 @@ struct Surface {
 
 /// Needs hit.hit(), and the geometry that was hit.
 Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);
+
+/// The surfaces of many hits; those of misses are left as they are. The same numbers as one by one, several at a time.
+void surfaces_at(const Geometry& geometry, std::span<const Ray> rays, std::span<const Hit> hits,
+                 std::span<Surface> surfaces);
 
 /// The same hit with t, barycentrics, normal and the bound on t worked out in double for the primitive that it names.
 Hit refine(const Geometry& geometry, const Ray& ray, const Hit& hit);

@@ -1,6 +1,6 @@
 // Loading of full packets of ordinary rays, compiled once per instruction set (see lanes.inl).
 
-#include "cpu/isa/lanes.inl"
+#include "accel/isa/lanes.inl"
 #include "cpu/packet.h"
 
 namespace rayengine::ISA {

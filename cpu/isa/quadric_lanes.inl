@@ -4,7 +4,7 @@
 
 #include "accel/geometry.h"
 #include "accel/unit_matrices.h"
-#include "cpu/isa/lanes.inl"
+#include "accel/isa/lanes.inl"
 #include "cpu/quadric_kind.h"
 
 namespace rayengine::ISA {

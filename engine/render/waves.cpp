@@ -12,6 +12,9 @@ namespace {
 /// over.
 constexpr float least_weight = 1.0f / 2048;
 
+/// Surfaces that are worked out before they are shaded: many, but no more than caches hold beside all else.
+constexpr std::size_t surfaces_at_once = 256;
+
 /// Places in the counts of rays.
 enum Kind { primary_ray, shadow_ray, reflected_ray, refracted_ray };
 
@@ -66,7 +69,7 @@ void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
   points_.resize(std::max(points_.size(), rays.size()));
   lit_ = 0;
   if (next) next->size = 0, next->reserve(2 * rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) shade(rays[i], hits_[i], queue.paths[first + i], points_[lit_], next);
+  shade(queue, first, last, next);
   for (const Light& light : picture_.lights) shine(light);
   if (!next) return;
   for (std::size_t begin = 0, end; begin < next->size; begin = end) {
@@ -75,13 +78,29 @@ void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
   }
 }
 
-void Waves::shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& point, Queue* next) {
-  if (!hit.hit()) {
-    invalid_ += (hit.status & status_invalid) != 0;
-    radiance_[path.sample] += path.weight * picture_.environment(ray.direction);
-    return;
+void Waves::shade(const Queue& queue, std::size_t first, std::size_t last, Queue* next) {
+  surfaces_.resize(surfaces_at_once);
+  for (std::size_t begin = first, end; begin < last; begin = end) {
+    end = std::min(begin + surfaces_at_once, last);
+    const std::span<const Ray> rays(queue.rays.data() + begin, end - begin);
+    const std::span<const Hit> hits(hits_.data() + (begin - first), rays.size());
+    surfaces_at(picture_.geometry, rays, hits, surfaces_);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Path& path = queue.paths[begin + i];
+      if (hits[i].hit())
+        shade(rays[i], surfaces_[i], path, points_[lit_], next);
+      else
+        leave(rays[i], hits[i], path);
+    }
   }
-  const Surface surface = surface_at(picture_.geometry, ray, hit);
+}
+
+void Waves::leave(const Ray& ray, const Hit& hit, const Path& path) {
+  invalid_ += (hit.status & status_invalid) != 0;
+  radiance_[path.sample] += path.weight * picture_.environment(ray.direction);
+}
+
+void Waves::shade(const Ray& ray, const Surface& surface, const Path& path, LitPoint& point, Queue* next) {
   const Material& material = picture_.materials[surface.material];
   radiance_[path.sample] += path.weight * (material.ambient * material.color);
   point.departure.set(surface, picture_.limits);

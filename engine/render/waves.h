@@ -75,7 +75,9 @@ class Waves {
   };
 
   void trace(std::size_t depth, std::size_t first, std::size_t last);
-  void shade(const Ray& ray, const Hit& hit, const Path& path, LitPoint& point, Queue* next);
+  void shade(const Queue& queue, std::size_t first, std::size_t last, Queue* next);
+  void leave(const Ray& ray, const Hit& hit, const Path& path);
+  void shade(const Ray& ray, const Surface& surface, const Path& path, LitPoint& point, Queue* next);
   void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next);
   void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
              std::uint64_t& count);
@@ -87,6 +89,7 @@ class Waves {
   std::vector<Queue> levels_;  ///< by depth; 0 holds the primary rays
   Queue shadow_;
   std::vector<Hit> hits_;
+  std::vector<Surface> surfaces_;
   std::vector<std::uint32_t> shadow_status_;
   std::vector<LitPoint> points_;  ///< the first lit_ of them count
   std::size_t lit_ = 0;

@@ -93,6 +93,66 @@ TEST(Surface, AgreesWithTheOracleWithinItsBounds) {
   }
 }
 
+/// Meshes with normals, zero ones among them, and triangles that rays see edge-on or whose squares vanish.
+std::vector<Body> odd_meshes() {
+  std::vector<Body> result;
+  for (const double size : {1.0, 1e-75, 1e75}) {
+    Mesh mesh = globe(9);
+    mesh.normals.resize(mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+      if (i % 3) mesh.normals[i] = glm::vec3(mesh.positions[i]) + glm::vec3(0.1f, 0, 0);
+    for (glm::dvec3& p : mesh.positions) p *= size;
+    GeometryBuilder builder;
+    builder.add(mesh);
+    builder.add(shape_of(QuadricType::cylinder), 1, Affine::scale(glm::dvec3(size)));
+    result.push_back({"odd mesh", builder.build()});
+  }
+  return result;
+}
+
+TEST(Surface, ManyAtOnceAreTheSameAsOneByOne) {
+  std::vector<Body> all = bodies();
+  for (const Body& body : odd_meshes()) all.push_back(body);
+  for (const Body& body : all) {
+    std::vector<Ray> rays = rays_at(*body.geometry);
+    for (Ray& ray : rays) {
+      const double size = body.geometry->bounds.finite() ? body.geometry->bounds.extent() : 1;
+      if (size < 1e-9 || size > 1e9) ray.origin *= size / 10, ray.direction *= size / 10;
+    }
+    std::vector<Hit> hits(rays.size());
+    make_tracer("bvh", body.geometry)->closest(rays, hits, RayClass::bounce);
+    std::vector<Surface> surfaces(rays.size());
+    surfaces_at(*body.geometry, rays, hits, surfaces);
+    int checked = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!hits[i].hit()) continue;
+      ++checked;
+      const Surface one = surface_at(*body.geometry, rays[i], hits[i]), &many = surfaces[i];
+      EXPECT_EQ(many.position, one.position) << body.name << " ray " << i;
+      EXPECT_EQ(many.normal, one.normal) << body.name << " ray " << i;
+      EXPECT_EQ(many.shading_normal, one.shading_normal) << body.name << " ray " << i;
+      EXPECT_EQ(many.error, one.error) << body.name << " ray " << i;
+      EXPECT_EQ(many.magnitude, one.magnitude) << body.name << " ray " << i;
+      EXPECT_EQ(many.spread, one.spread) << body.name << " ray " << i;
+      EXPECT_EQ(many.material, one.material) << body.name << " ray " << i;
+      EXPECT_EQ(many.is_triangle, one.is_triangle) << body.name << " ray " << i;
+    }
+    EXPECT_GT(checked, 40) << body.name;
+  }
+}
+
+TEST(Surface, EdgeOnIsOneByOneAmongMany) {
+  GeometryBuilder builder;
+  builder.add(Mesh{{{0, 0, 0}, {3, 0, 0}, {0, 4, 0}}, {}, {{0, 1, 2}}});
+  const auto geometry = builder.build();
+  const std::vector<Ray> rays{{{0.5, 0.5, 3}, 0, {0, 0, -1}, infinity}, {{-3, 0.5, 0}, 0, {1, 0, 0}, infinity}};
+  const Hit hit{.t = 3.25, .object = 0, .primitive = 0, .status = status_hit};
+  std::vector<Surface> surfaces(2);
+  surfaces_at(*geometry, rays, std::vector<Hit>{hit, hit}, surfaces);
+  EXPECT_EQ(surfaces[0].position, glm::dvec3(0.5, 0.5, 0));
+  EXPECT_EQ(surfaces[1].position, glm::dvec3(0.25, 0.5, 0));
+}
+
 TEST(Surface, SpreadIsTheDiameterOfTheCircleThroughTheCorners) {
   // A right angle's circle has the longest edge for its diameter.
   GeometryBuilder builder;
