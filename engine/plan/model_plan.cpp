@@ -170,9 +170,11 @@ std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics&
       "building the same again takes longer than rays do among instances"};
 }
 
-/// Of the tolerance, what a mesh may be moved by: rounded down to a power of the root of two, so that a camera that
-/// moves a little finds the coarser meshes that were kept.
+/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two, so
+/// that a camera that moves a little finds those that were kept.
 double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
+
+bool is_coarser(Representation r) { return r == Representation::prepared || r == Representation::simplified; }
 
 }  // namespace
 
@@ -188,10 +190,11 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
   std::array<Tally, representation_names.size()> tallies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const ObjectStatistics& o = scene.objects[i];
-    plan.allowances.push_back(rounded(model_share * allowance(tolerance, o, scene.pixel)));
-    const Options options(o, plan.allowances.back(), scene, device, effort);
+    const double allowed = model_share * allowance(tolerance, o, scene.pixel);
+    const Options options(o, rounded(allowed), scene, device, effort);
     const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
     plan.objects.push_back(best.representation);
+    plan.allowances.push_back(is_coarser(best.representation) ? rounded(allowed) : allowed);
     tallies[static_cast<std::size_t>(best.representation)].add(o, best.seconds, options.kept().seconds);
   }
   for (std::size_t r = 0; r < tallies.size(); ++r)
