@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "engine/plan/recognise/recognise.h"
 #include "engine/plan/repeats.h"
 
 namespace rayengine {
@@ -32,8 +31,8 @@ Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
 
 class ModelBuilder {
  public:
-  ModelBuilder(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier)
-      : scene_(scene), geometry_(*scene.geometry), plan_(plan), simplifier_(simplifier) {}
+  ModelBuilder(const Scene& scene, const ModelPlan& plan, const MeshTools& tools)
+      : scene_(scene), geometry_(*scene.geometry), plan_(plan), tools_(tools) {}
 
   Model run() {
     if (!may_change()) return {scene_, {}};
@@ -53,8 +52,9 @@ class ModelBuilder {
       case Representation::kept: return false;
       case Representation::recognised: return recognised(Pieces::whole);
       case Representation::recognised_parts: return recognised(Pieces::parts);
-      case Representation::prepared: return may_recall(object_) && simplified(simplifier_.recall);
-      case Representation::simplified: return simplified(simplifier_.make);
+      case Representation::recalled: return may_recall(object_) && recalled();
+      case Representation::prepared: return may_recall(object_) && simplified(tools_.recall_simplified);
+      case Representation::simplified: return simplified(tools_.simplify);
       case Representation::instance: break;  // found below, not planned
     }
     return false;
@@ -62,7 +62,20 @@ class ModelBuilder {
 
   bool recognised(Pieces pieces) {
     const Mesh mesh = mesh_of(geometry_, object_);
-    const Recognition found = recognise(mesh, plan_.allowances[object_], pieces);
+    const double allowed = plan_.allowances[object_];
+    return take(mesh, tools_.recognise ? tools_.recognise(mesh, allowed, pieces) : recognise(mesh, allowed, pieces));
+  }
+
+  bool recalled() {
+    if (!tools_.recall_recognised) return false;
+    const Mesh mesh = mesh_of(geometry_, object_);
+    for (const Pieces pieces : {Pieces::parts, Pieces::whole})
+      if (const auto found = tools_.recall_recognised(mesh, plan_.allowances[object_], pieces))
+        return take(mesh, *found);
+    return false;
+  }
+
+  bool take(const Mesh& mesh, const Recognition& found) {
     if (found.quadrics.empty()) return false;
     Replacement what = replacement(mesh);
     for (const RecognisedQuadric& q : found.quadrics) {
@@ -119,15 +132,18 @@ class ModelBuilder {
   }
 
   bool may_recall(std::uint32_t object) const {
-    return simplifier_.may_recall && simplifier_.may_recall(primitive_count(geometry_, object));
+    return tools_.may_recall && tools_.may_recall(primitive_count(geometry_, object));
+  }
+
+  static bool is_from_before(Representation r) {
+    return r == Representation::recalled || r == Representation::prepared;
   }
 
   /// Where not, nothing need be copied.
   bool may_change() const {
     if (plan_.find_repeats) return true;
     for (std::uint32_t i = 0; i < plan_.objects.size(); ++i)
-      if (plan_.objects[i] != Representation::kept && (plan_.objects[i] != Representation::prepared || may_recall(i)))
-        return true;
+      if (plan_.objects[i] != Representation::kept && (!is_from_before(plan_.objects[i]) || may_recall(i))) return true;
     return false;
   }
 
@@ -148,7 +164,7 @@ class ModelBuilder {
   const Scene& scene_;
   const Geometry& geometry_;
   const ModelPlan& plan_;
-  const Simplifier& simplifier_;
+  const MeshTools& tools_;
   std::uint32_t object_ = 0;                                         // the scene's, that is at hand
   std::map<std::uint32_t, Repeat> repeats_;                          // by object
   std::map<std::uint32_t, std::shared_ptr<const Geometry>> groups_;  // by the object that others repeat
@@ -159,8 +175,8 @@ class ModelBuilder {
 
 }  // namespace
 
-Model make_model(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier) {
-  return ModelBuilder(scene, plan, simplifier).run();
+Model make_model(const Scene& scene, const ModelPlan& plan, const MeshTools& tools) {
+  return ModelBuilder(scene, plan, tools).run();
 }
 
 }  // namespace rayengine

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/plan/plan.h"
+#include "engine/plan/recognise/recognise.h"
 #include "engine/scene/scene.h"
 
 namespace rayengine {
@@ -32,16 +33,18 @@ struct CoarserMesh {
   double distance = 0;  ///< a bound on the two-sided Hausdorff distance that it kept
 };
 
-/// Makes meshes coarser: the loader module has one (see engine/load/simplifier.h); without any, meshes stay as they
-/// are.
-struct Simplifier {
-  std::function<CoarserMesh(const Mesh& mesh, double distance)> make;
-  std::function<std::optional<CoarserMesh>(const Mesh& mesh, double distance)> recall;  ///< what was made before
-  std::function<bool(std::size_t triangles)> may_recall;  ///< a quick look whether there can be such
+/// Makes of meshes what stands in for them, and recalls what was made before: the loader module has such (see
+/// engine/load/mesh_tools.h). Without, no mesh becomes a coarser one, and recognise() finds quadrics anew each time.
+struct MeshTools {
+  std::function<CoarserMesh(const Mesh& mesh, double distance)> simplify;
+  std::function<std::optional<CoarserMesh>(const Mesh& mesh, double distance)> recall_simplified;
+  std::function<Recognition(const Mesh& mesh, double distance, Pieces pieces)> recognise;
+  std::function<std::optional<Recognition>(const Mesh& mesh, double distance, Pieces pieces)> recall_recognised;
+  std::function<bool(std::size_t triangles)> may_recall;  ///< a quick look whether there can be anything
 };
 
 /// Carries out the plan. What turns out not to keep the allowances, or not to save anything, stays as it is; where
 /// nothing is replaced the model shares the scene's geometry.
-Model make_model(const Scene& scene, const ModelPlan& plan, const Simplifier& simplifier = {});
+Model make_model(const Scene& scene, const ModelPlan& plan, const MeshTools& tools = {});
 
 }  // namespace rayengine

@@ -12,7 +12,7 @@ constexpr std::uint32_t smallest_mesh = 256;  // triangles: with fewer there is 
 constexpr double least_share = 0.5;           // of a mesh's patches, for looking at all of it to pay
 constexpr double parts_share = 0.5;           // of what lies on quadrics, about what has an outline that fits one
 constexpr double left_per_area = 0.5;         // triangles left in a square of the allowance's side, by clustering
-constexpr double recall_seconds = 1e-8;       // a triangle, to look whether a coarser mesh is kept
+constexpr double recall_seconds = 1e-8;       // a triangle, to look whether anything is kept that was made of it
 
 struct Option {
   Representation representation = Representation::kept;
@@ -32,13 +32,17 @@ class Options {
     Option best = kept();
     if (object_.triangles < smallest_mesh || !(allowed_ > 0)) return best;
     if (effort_.recognise) return {Representation::recognised_parts, seconds(object_.triangles) + looking()};
-    const double enough = worthwhile * best.seconds;
-    for (const Option& option : {pieces(), parts(), coarser(), prepared()})
-      if (option.seconds < std::min(enough, best.seconds)) best = option;
+    for (const Option& option : {pieces(), parts(), coarser()}) take_cheaper(best, option);
+    if (best.representation != Representation::kept) return best;  // what is kept of those they find themselves
+    for (const Option& option : {recalled(), prepared()}) take_cheaper(best, option);
     return best;
   }
 
  private:
+  void take_cheaper(Option& best, const Option& option) const {
+    if (option.seconds < std::min(worthwhile * kept().seconds, best.seconds)) best = option;
+  }
+
   /// To build so many triangles, and to ask the rays that an object as large as this may catch.
   double seconds(double triangles) const {
     const TracerCost& usual = usual_tracer(device_);
@@ -53,12 +57,15 @@ class Options {
 
   Option quadrics(Representation how, double share, double per_triangle) const {
     if (share < least_share) return {how, infinity};
-    return {how, object_.triangles * per_triangle + seconds(object_.triangles * (1 - share))};
+    return {how, object_.triangles * (effort_.prepare ? 0 : per_triangle) + seconds(object_.triangles * (1 - share))};
   }
   double looking() const { return object_.triangles * device_.recognise_parts; }
   Option pieces() const { return quadrics(Representation::recognised, object_.ball_share, device_.recognise_whole); }
   Option parts() const {
     return quadrics(Representation::recognised_parts, parts_share * object_.quadric_share, device_.recognise_parts);
+  }
+  Option recalled() const {
+    return quadrics(Representation::recalled, parts_share * object_.quadric_share, recall_seconds);
   }
 
   double triangles_left() const {
@@ -67,7 +74,7 @@ class Options {
   }
   Option coarser() const {
     return {Representation::simplified,
-            (effort_.simplify ? 0 : object_.triangles * device_.simplify) + seconds(triangles_left())};
+            (effort_.prepare ? 0 : object_.triangles * device_.simplify) + seconds(triangles_left())};
   }
   Option prepared() const {
     return {Representation::prepared, object_.triangles * recall_seconds + seconds(triangles_left())};
@@ -96,12 +103,14 @@ struct Tally {
 constexpr std::array representation_names{"as given",
                                           "quadrics in place of pieces",
                                           "quadrics in place of parts",
+                                          "quadrics, where found before",
                                           "coarser meshes, where prepared",
                                           "coarser meshes",
                                           "instances"};
 constexpr std::array representation_reasons{"nothing cheaper is within the tolerance",
                                             "patches lie on ellipsoids, found faster than a BVH is built",
                                             "patches lie on quadrics, and there are rays enough to repay the search",
+                                            "patches lie on quadrics; to look for them takes longer than it saves",
                                             "triangles are small; to make them larger takes longer than it saves",
                                             "triangles are small, and larger ones within the tolerance"};
 
@@ -170,8 +179,8 @@ std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics&
       "building the same again takes longer than rays do among instances"};
 }
 
-/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two, so
-/// that a camera that moves a little finds those that were kept.
+/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two,
+/// so that a camera that moves a little finds those that were kept.
 double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
 
 bool is_coarser(Representation r) { return r == Representation::prepared || r == Representation::simplified; }

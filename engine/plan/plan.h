@@ -15,6 +15,7 @@ enum class Representation : std::uint8_t {
   kept,              ///< as it is
   recognised,        ///< quadrics in place of the pieces that are tessellated ones
   recognised_parts,  ///< and in place of parts of pieces
+  recalled,          ///< and in place of what they were found for before, if that is kept
   prepared,          ///< a coarser mesh, if one was made before and is kept
   simplified,        ///< a coarser mesh
   instance,          ///< the same mesh as another object's, held once
@@ -50,7 +51,7 @@ struct TracingPlan {
 
 /// What finding a model may cost beyond what one picture repays.
 struct Effort {
-  bool simplify = false;   ///< make coarser meshes that are kept for the next time
+  bool prepare = false;    ///< make what is kept, and pays the next time
   bool recognise = false;  ///< look at every mesh for quadrics
 };
 

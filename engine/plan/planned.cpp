@@ -11,7 +11,7 @@ Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   const CanonicalScene canonical = in_canonical_forms(scene, options.tolerance);
   const SceneStatistics given = gather_statistics(canonical.scene, options.rays, options.coherent);
   const ModelPlan model = plan_model(given, device, options.tolerance, options.effort);
-  Planned result{make_model(canonical.scene, model, options.simplifier), {}, canonical.choices, 0};
+  Planned result{make_model(canonical.scene, model, options.tools), {}, canonical.choices, 0};
   result.choices.insert(result.choices.end(), model.choices.begin(), model.choices.end());
   const SceneStatistics made =
       result.model.replaced.empty() ? given : gather_statistics(result.model.scene, options.rays, options.coherent);

@@ -11,7 +11,7 @@ struct PlanOptions {
   bool coherent = true;  ///< whether most of them are the eye's or go to lights
   Effort effort;
   bool gpu = false;  ///< whether there is one that is more than software
-  Simplifier simplifier;
+  MeshTools tools;
   const DeviceMeasurements* device = nullptr;  ///< null: usual_device()
 };
 

@@ -14,7 +14,7 @@ struct Options {
   Common common;
   std::filesystem::path scene, json;
   std::optional<glm::ivec2> size;
-  PlanningOptions planning{.tolerance = 0.5, .effort = {.simplify = true}};
+  PlanningOptions planning{.tolerance = 0.5, .effort = {.prepare = true}};
   bool measure = false;
 };
 

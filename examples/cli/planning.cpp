@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "accel/cache_folder.h"
-#include "engine/load/simplifier.h"
+#include "engine/load/mesh_tools.h"
 #include "engine/load/simplify.h"
 #include "engine/measure/measure_device.h"
 #include "gpu/device/hardware.h"
@@ -47,8 +47,8 @@ std::string error_text(double error, const char* unit) {
 
 Json number(double value) { return value < 0 ? Json(nullptr) : Json(value); }
 
-constexpr std::array representation_names{"kept",       "recognised", "recognised in parts", "simplified before",
-                                          "simplified", "held once"};
+constexpr std::array representation_names{
+    "kept", "recognised", "recognised in parts", "recognised before", "simplified before", "simplified", "held once"};
 
 const char* name_of(Representation r) { return representation_names[static_cast<std::size_t>(r)]; }
 
@@ -117,7 +117,7 @@ PlanSource::PlanSource(const PlanningOptions& options, const Common& common)
     : options_{.tolerance = tolerance_of(options),
                .effort = options.effort,
                .gpu = may_have_gpu(),
-               .simplifier = cached_simplifier()},
+               .tools = cached_mesh_tools()},
       device_(known_device(common)) {}
 
 PlanOptions PlanSource::for_rays(double rays, bool coherent) const {

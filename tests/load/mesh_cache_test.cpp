@@ -6,8 +6,12 @@
 #include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "accel/tracer.h"
+#include "engine/load/mesh_files.h"
+#include "engine/load/mesh_tools.h"
+#include "engine/load/recognition_cache.h"
 #include "engine/measure/tessellate.h"
 #include "tests/temporary.h"
 
@@ -134,13 +138,84 @@ TEST_F(MeshCache, DropsWhatWasUnusedForLongest) {
     fs::last_write_time(file, now - std::chrono::hours(hours));
     return file;
   };
-  const fs::path oldest = make("oldest.mesh", mesh_cache_limit / 2, 3), old = make("old.mesh", mesh_cache_limit / 2, 2);
-  const fs::path foreign = make("other.program", mesh_cache_limit, 9);
+  const fs::path oldest = make("oldest.mesh", mesh_files_limit / 2, 3), old = make("old.mesh", mesh_files_limit / 2, 2);
+  const fs::path foreign = make("other.program", mesh_files_limit, 9);
   simplify_cached(sphere_, tolerance);
   EXPECT_FALSE(fs::exists(oldest));
   EXPECT_TRUE(fs::exists(old));
   EXPECT_TRUE(fs::exists(foreign));  // not ours to remove
   EXPECT_TRUE(find_simplified(sphere_, tolerance));
+}
+
+void expect_same(const Recognition& a, const Recognition& b) {
+  EXPECT_EQ(a.rest, b.rest);
+  ASSERT_EQ(a.quadrics.size(), b.quadrics.size());
+  for (std::size_t i = 0; i < a.quadrics.size(); ++i) {
+    const RecognisedQuadric &p = a.quadrics[i], &q = b.quadrics[i];
+    EXPECT_EQ(p.shape.type, q.shape.type);
+    EXPECT_EQ(p.shape.capped, q.shape.capped);
+    EXPECT_EQ(p.shape.clip, q.shape.clip);
+    EXPECT_EQ(p.shape.matrix, q.shape.matrix);
+    ASSERT_EQ(p.shape.box.has_value(), q.shape.box.has_value());
+    if (p.shape.box) {
+      EXPECT_EQ(p.shape.box->lower, q.shape.box->lower);
+      EXPECT_EQ(p.shape.box->upper, q.shape.box->upper);
+    }
+    EXPECT_TRUE(p.to_world.linear == q.to_world.linear && p.to_world.origin == q.to_world.origin);
+    EXPECT_EQ(p.residual, q.residual);
+  }
+}
+
+/// A tube without ends, its front inside, in one piece with a triangle that stays, beside a ball.
+Mesh bore_and_ball() {
+  Mesh mesh = subdivided_sphere(4);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  constexpr std::uint32_t segments = 64;
+  for (std::uint32_t i = 0; i < segments; ++i)
+    for (const double z : {0., 2.}) {
+      const double angle = 2 * std::numbers::pi * i / segments;
+      mesh.positions.emplace_back(5 + std::cos(angle), std::sin(angle), z);
+    }
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    const std::uint32_t a = base + 2 * i, b = base + 2 * ((i + 1) % segments);
+    mesh.triangles.emplace_back(a, a + 1, b);
+    mesh.triangles.emplace_back(b, a + 1, b + 1);
+  }
+  mesh.positions.insert(mesh.positions.end(), {{9, 0, 0}, {9, 1, 0}, {9, 0, 1}});
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.triangles.emplace_back(last - 3, last - 2, last - 1);
+  return mesh;
+}
+
+TEST_F(MeshCache, KeepsQuadricsThatWereFound) {
+  const Mesh mesh = bore_and_ball();
+  const Recognition found = recognise(mesh, tolerance);
+  ASSERT_EQ(found.quadrics.size(), 2u);
+  EXPECT_FALSE(find_recognised(mesh, tolerance, Pieces::parts));
+  expect_same(recognise_cached(mesh, tolerance, Pieces::parts), found);
+  expect_same(find_recognised(mesh, tolerance, Pieces::parts).value(), found);
+  expect_same(recognise_cached(mesh, tolerance, Pieces::parts), found);
+  EXPECT_FALSE(find_recognised(mesh, tolerance, Pieces::whole));
+  EXPECT_FALSE(find_recognised(mesh, 2 * tolerance, Pieces::parts));
+  EXPECT_FALSE(find_simplified(mesh, tolerance));
+  ASSERT_EQ(files().size(), 1u);
+  fs::resize_file(files().at(0), fs::file_size(files().at(0)) - 1);
+  EXPECT_FALSE(find_recognised(mesh, tolerance, Pieces::parts));
+}
+
+TEST_F(MeshCache, GivesAPlanWhatWasFoundBefore) {
+  Scene scene;
+  GeometryBuilder builder;
+  builder.add(bore_and_ball());
+  scene.geometry = builder.build();
+  const ModelPlan plan{{Representation::recalled}, {tolerance}, false, {}};
+  const MeshTools tools = cached_mesh_tools();
+  EXPECT_TRUE(make_model(scene, plan, tools).replaced.empty());
+  recognise_cached(bore_and_ball(), tolerance, Pieces::parts);
+  const Model model = make_model(scene, plan, tools);
+  ASSERT_EQ(model.replaced.size(), 1u);
+  EXPECT_EQ(model.replaced[0].quadrics, 2u);
+  EXPECT_EQ(model.replaced[0].triangles_left, 1u);
 }
 
 TEST_F(MeshCache, TakesAHitForAUse) {

@@ -12,7 +12,7 @@
 #include "cpu/reference_tracer.h"
 #include "engine/batched.h"
 #include "engine/load/load.h"
-#include "engine/load/simplifier.h"
+#include "engine/load/mesh_tools.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
 #include "engine/plan/planned.h"
@@ -153,13 +153,13 @@ TEST_P(Scenes, KeepToATolerance) {
   Scene scene = load_scene(file());
   scene.camera.size = {side, side};  // few pixels are large ones: there is more to be replaced
   const std::vector<Ray> rays = random_camera_rays(scene.camera, 2000);
-  for (const Effort& effort : {Effort{.simplify = true}, Effort{.recognise = true}})
+  for (const Effort& effort : {Effort{.prepare = true}, Effort{.recognise = true}})
     for (const double pixels : {0., 0.1, 1.}) {
       const Tolerance tolerance{pixels};
       const Planned planned = plan_scene(scene, {.tolerance = tolerance,
                                                  .rays = expected_rays(scene, 1),
                                                  .effort = effort,
-                                                 .simplifier = cached_simplifier(),
+                                                 .tools = cached_mesh_tools(),
                                                  .device = &device});
       const Scene& model = planned.model.scene;
       const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});

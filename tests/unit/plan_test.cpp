@@ -62,7 +62,13 @@ TEST(Plan, LooksForBallsOnlyWherePatchesLieOnThem) {
 TEST(Plan, LooksAtPartsOnlyWhereRaysRepayIt) {
   ObjectStatistics mesh = far_mesh(100000, 0.2);
   mesh.quadric_share = 1;
+  EXPECT_EQ(chosen_for(mesh), Representation::recalled);  // which looks for none
+  const Effort prepare{.prepare = true};
+  EXPECT_EQ(plan_model(scene_of({mesh}), usual_device(), half_pixel, prepare).objects[0],
+            Representation::recognised_parts);
+  mesh.quadric_share = 0;
   EXPECT_EQ(chosen_for(mesh), Representation::kept);
+  mesh.quadric_share = 1;
   DeviceMeasurements quick = usual_device();
   quick.recognise_parts = 0;
   EXPECT_EQ(plan_model(scene_of({mesh}), quick, half_pixel).objects[0], Representation::recognised_parts);
