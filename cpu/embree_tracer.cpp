@@ -75,7 +75,7 @@ class EmbreeTracer final : public Tracer {
   template <class RayHits, int lanes>
   void closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const;
   template <class Rays, int lanes>
-  void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const;
+  void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status) const;
   std::vector<Hit> all(const Ray& ray) const;
   // These write to their last argument in place: copies of a hit cost as much as making it.
   void triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const;
@@ -91,26 +91,35 @@ class EmbreeTracer final : public Tracer {
   std::unique_ptr<EmbreeScene> filtering_;  ///< the same with the same ids, made by the first all-hits query
   std::once_flag filtering_once_;
   RayLoader loader_;
+  /// Tests of triangles are so cheap that shadow rays gain from packets even where they part.
+  bool mostly_triangles_ = geometry_->triangles.size() > geometry_->quadrics.size();
 };
 
 /// Primary and shadow rays are coherent as they come.
 bool is_coherent(RayClass ray_class) { return ray_class != RayClass::bounce; }
 
-/// Rays into one octant visit a tree in the same order: they gain from packets whatever made them.
-bool share_octant(std::span<const Ray> rays) {
+double absolute_sum(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+/// Rays into one octant visit a tree in the same order: they gain from packets whatever made them, unless they spread
+/// over all of it.
+bool keep_together(std::span<const Ray> rays) {
   const auto octant = [](const Ray& r) {
     return (r.direction.x < 0) | (r.direction.y < 0) << 1 | (r.direction.z < 0) << 2;
   };
-  return std::all_of(rays.begin(), rays.end(), [&](const Ray& r) { return octant(r) == octant(rays[0]); });
+  const glm::dvec3& first = rays[0].direction;
+  const double spread = 0.8 * absolute_sum(first);
+  return std::all_of(rays.begin(), rays.end(), [&](const Ray& r) {
+    return octant(r) == octant(rays[0]) && absolute_sum(r.direction - first) < spread;
+  });
 }
 
-/// Calls `together` or `alone` for runs of rays, whole packets each, as their octants have it.
+/// Calls `together` or `alone` for runs of rays, whole packets each, as their directions have it.
 template <class Together, class Alone>
 void for_runs(std::span<const Ray> rays, std::size_t lanes, Together&& together, Alone&& alone) {
   const auto packet = [&](std::size_t first) { return rays.subspan(first, std::min(lanes, rays.size() - first)); };
   for (std::size_t first = 0, end; first < rays.size(); first = end) {
-    const bool coherent = share_octant(packet(first));
-    for (end = first + lanes; end < rays.size() && share_octant(packet(end)) == coherent;) end += lanes;
+    const bool coherent = keep_together(packet(first));
+    for (end = first + lanes; end < rays.size() && keep_together(packet(end)) == coherent;) end += lanes;
     end = std::min(end, rays.size());
     coherent ? together(first, end - first) : alone(first, end - first);
   }
@@ -187,9 +196,9 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
 }
 
 template <class Rays, int lanes>
-void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
+void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
   Packet<Rays> packet;
-  loader_.begin(lanes, is_coherent(ray_class), packet);
+  loader_.begin(lanes, lanes > 1, packet);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = rays.subspan(first, std::min<std::size_t>(lanes, rays.size() - first));
     if (loader_.load(now, lanes, packet)) {
@@ -228,9 +237,16 @@ void EmbreeTracer::any(std::span<const Ray> rays, std::span<std::uint32_t> statu
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
     const auto some = rays.subspan(first, last - first);
     const auto out = status.subspan(first, last - first);
-    if (!is_coherent(ray_class)) return any_packets<RTCRay, 1>(some, out, ray_class);
-    if (scene_.native_packet() == 16) return any_packets<RTCRay16, 16>(some, out, ray_class);
-    any_packets<RTCRay8, 8>(some, out, ray_class);
+    const bool wide = scene_.native_packet() == 16;
+    const auto together = [&](std::size_t from, std::size_t count) {
+      if (wide) return any_packets<RTCRay16, 16>(some.subspan(from, count), out.subspan(from, count));
+      any_packets<RTCRay8, 8>(some.subspan(from, count), out.subspan(from, count));
+    };
+    const auto alone = [&](std::size_t from, std::size_t count) {
+      any_packets<RTCRay, 1>(some.subspan(from, count), out.subspan(from, count));
+    };
+    if (is_coherent(ray_class) || mostly_triangles_) return together(0, some.size());
+    for_runs(some, wide ? 16 : 8, together, alone);
   });
 }
 

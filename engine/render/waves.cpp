@@ -1,6 +1,7 @@
 #include "engine/render/waves.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/render/photons.h"
 #include "engine/render/scatter.h"
@@ -47,7 +48,7 @@ std::span<Ray> Waves::primary(std::size_t count) {
   queue.size = 0;
   queue.reserve(count);
   queue.size = count;
-  for (; known < count; ++known) queue.paths[known] = {glm::vec3(1), static_cast<std::uint32_t>(known)};
+  for (; known < count; ++known) queue.paths[known] = {glm::vec3(1), static_cast<std::uint32_t>(known), false};
   return {queue.rays.data(), count};
 }
 
@@ -55,38 +56,57 @@ std::span<const glm::vec3> Waves::radiance() {
   const std::size_t count = levels_.front().size;
   radiance_.assign(count, glm::vec3(0));
   rays_[primary_ray] += count;
-  trace(0, 0, count);
+  trace(0, levels_.front().wave(0, count));
   return radiance_;
 }
 
-void Waves::trace(std::size_t depth, std::size_t first, std::size_t last) {
-  const Queue& queue = levels_[depth];
-  Queue* next = depth + 1 < levels_.size() ? &levels_[depth + 1] : nullptr;
-  const std::span<const Ray> rays(queue.rays.data() + first, last - first);
-  hits_.resize(std::max(hits_.size(), rays.size()));
-  gate_.closest(rays, {hits_.data(), rays.size()}, depth ? RayClass::bounce : RayClass::primary);
+/// Rays of one kind and into one octant run side by side with their neighbours more often than not, and are then traced
+/// faster: they go to the tracer in this order, and their hits come back in that of the wave.
+void Waves::trace_sorted(const Wave& wave) {
+  const auto group = [&](std::size_t i) {
+    const glm::dvec3& d = wave.rays[i].direction;
+    return wave.paths[i].refracted << 3 | (d.x < 0) << 2 | (d.y < 0) << 1 | (d.z < 0);
+  };
+  const std::size_t count = wave.rays.size();
+  std::array<std::uint32_t, 17> places{};
+  for (std::size_t i = 0; i < count; ++i) ++places[group(i) + 1];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  Sorting& s = sorting_;
+  s.rays.resize(std::max(s.rays.size(), count)), s.hits.resize(s.rays.size()), s.places.resize(s.rays.size());
+  for (std::size_t i = 0; i < count; ++i) s.rays[s.places[i] = places[group(i)]++] = wave.rays[i];
+  gate_.closest({s.rays.data(), count}, {s.hits.data(), count}, RayClass::bounce);
+  for (std::size_t i = 0; i < count; ++i) hits_[i] = s.hits[s.places[i]];
+}
 
-  points_.resize(std::max(points_.size(), rays.size()));
+void Waves::trace(std::size_t depth, const Wave& wave) {
+  Queue* next = depth + 1 < levels_.size() ? &levels_[depth + 1] : nullptr;
+  const std::size_t count = wave.rays.size();
+  hits_.resize(std::max(hits_.size(), count));
+  if (depth)
+    trace_sorted(wave);
+  else
+    gate_.closest(wave.rays, {hits_.data(), count}, RayClass::primary);
+
+  points_.resize(std::max(points_.size(), count));
   lit_ = 0;
-  if (next) next->size = 0, next->reserve(2 * rays.size());
-  shade(queue, first, last, next);
-  for (const Light& light : picture_.lights) shine(light);
+  if (next) next->size = 0, next->reserve(2 * count);
+  shade(wave, next);
+  for (const Light& light : picture_.lights) shine(light, depth ? RayClass::bounce : RayClass::shadow);
   if (!next) return;
   for (std::size_t begin = 0, end; begin < next->size; begin = end) {
     end = next->wave_end(begin, picture_.limits.batch);
-    trace(depth + 1, begin, end);
+    trace(depth + 1, next->wave(begin, end));
   }
 }
 
-void Waves::shade(const Queue& queue, std::size_t first, std::size_t last, Queue* next) {
+void Waves::shade(const Wave& wave, Queue* next) {
   surfaces_.resize(surfaces_at_once);
-  for (std::size_t begin = first, end; begin < last; begin = end) {
-    end = std::min(begin + surfaces_at_once, last);
-    const std::span<const Ray> rays(queue.rays.data() + begin, end - begin);
-    const std::span<const Hit> hits(hits_.data() + (begin - first), rays.size());
+  for (std::size_t begin = 0; begin < wave.rays.size(); begin += surfaces_at_once) {
+    const auto rays = wave.rays.subspan(begin, std::min(surfaces_at_once, wave.rays.size() - begin));
+    const std::span<const Hit> hits(hits_.data() + begin, rays.size());
     surfaces_at(picture_.geometry, rays, hits, surfaces_);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Path& path = queue.paths[begin + i];
+      const Path& path = wave.paths[begin + i];
       if (hits[i].hit())
         shade(rays[i], surfaces_[i], path, points_[lit_], next);
       else
@@ -121,21 +141,21 @@ void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& poin
   const glm::vec3 glass = point.path.weight * material.transmit * material.color;
   if (matters(glass)) {
     if (const auto through = passed_through(ray.direction, surface, material))
-      spawn(next, point, *through, glass, rays_[refracted_ray]);
+      spawn(next, point, *through, glass, true);
     else
       mirror += glass;
   }
-  spawn(next, point, mirrored(ray.direction, surface), mirror, rays_[reflected_ray]);
+  spawn(next, point, mirrored(ray.direction, surface), mirror, false);
 }
 
 void Waves::spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
-                  std::uint64_t& count) {
+                  bool refracted) {
   if (!matters(weight)) return;
-  next.add(from.departure, direction, infinity, weight, from.path.sample);
-  ++count;
+  next.add(from.departure, direction, infinity, weight, from.path.sample, refracted);
+  ++rays_[refracted ? refracted_ray : reflected_ray];
 }
 
-void Waves::shine(const Light& light) {
+void Waves::shine(const Light& light, RayClass ray_class) {
   const bool is_point = light.type == Light::Type::point;
   // t counts in lengths of the direction: at 1 the ray has reached a point light.
   const double tmax = is_point ? 1 : infinity;
@@ -149,13 +169,13 @@ void Waves::shine(const Light& light) {
     const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
     if (seen != glm::vec3(0)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
   }
-  if (shadow_.size > 0) add_unshadowed();
+  if (shadow_.size > 0) add_unshadowed(ray_class);
 }
 
-void Waves::add_unshadowed() {
+void Waves::add_unshadowed(RayClass ray_class) {
   rays_[shadow_ray] += shadow_.size;
   shadow_status_.resize(std::max(shadow_status_.size(), shadow_.size));
-  gate_.any({shadow_.rays.data(), shadow_.size}, {shadow_status_.data(), shadow_.size}, RayClass::shadow);
+  gate_.any({shadow_.rays.data(), shadow_.size}, {shadow_status_.data(), shadow_.size}, ray_class);
   for (std::size_t i = 0; i < shadow_.size; ++i) {
     if (!(shadow_status_[i] & status_hit)) radiance_[shadow_.paths[i].sample] += shadow_.paths[i].weight;
     invalid_ += (shadow_status_[i] & status_invalid) != 0;

@@ -48,7 +48,13 @@ class Waves {
   /// What a ray brings to the picture: `weight` times what it sees, added to `sample`.
   struct Path {
     glm::vec3 weight;
-    std::uint32_t sample;
+    std::uint32_t sample : 31;
+    std::uint32_t refracted : 1;
+  };
+  /// Rays that are traced together, and their paths.
+  struct Wave {
+    std::span<const Ray> rays;
+    std::span<const Path> paths;
   };
   /// Rays that wait to be traced, in the order of their samples.
   struct Queue {
@@ -58,12 +64,21 @@ class Waves {
 
     void reserve(std::size_t more);
     void add(const Departure& from, const glm::dvec3& direction, double tmax, const glm::vec3& weight,
-             std::uint32_t sample) {
+             std::uint32_t sample, bool refracted = false) {
       from.start(rays[size], direction, tmax);
-      paths[size++] = {weight, sample};
+      paths[size++] = {weight, sample, refracted};
     }
     /// The end of the wave that starts at `first`: whole samples, as many as fit `batch` rays, at least one.
     std::size_t wave_end(std::size_t first, std::size_t batch) const;
+    Wave wave(std::size_t first, std::size_t last) const {
+      return {{rays.data() + first, last - first}, {paths.data() + first, last - first}};
+    }
+  };
+  /// A wave in the order in which it is traced, and where its rays went.
+  struct Sorting {
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    std::vector<std::uint32_t> places;
   };
   /// A hit that lights may reach.
   struct LitPoint {
@@ -74,21 +89,22 @@ class Waves {
     Path path;
   };
 
-  void trace(std::size_t depth, std::size_t first, std::size_t last);
-  void shade(const Queue& queue, std::size_t first, std::size_t last, Queue* next);
+  void trace_sorted(const Wave& wave);
+  void trace(std::size_t depth, const Wave& wave);
+  void shade(const Wave& wave, Queue* next);
   void leave(const Ray& ray, const Hit& hit, const Path& path);
   void shade(const Ray& ray, const Surface& surface, const Path& path, LitPoint& point, Queue* next);
   void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next);
-  void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
-             std::uint64_t& count);
-  void shine(const Light& light);
-  void add_unshadowed();
+  void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight, bool refracted);
+  void shine(const Light& light, RayClass ray_class);
+  void add_unshadowed(RayClass ray_class);
 
   const Picture& picture_;
   TracerGate& gate_;
   std::vector<Queue> levels_;  ///< by depth; 0 holds the primary rays
   Queue shadow_;
   std::vector<Hit> hits_;
+  Sorting sorting_;
   std::vector<Surface> surfaces_;
   std::vector<std::uint32_t> shadow_status_;
   std::vector<LitPoint> points_;  ///< the first lit_ of them count
