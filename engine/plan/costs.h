@@ -16,7 +16,7 @@ inline constexpr double worthwhile = 0.85;
 /// Seconds a ray among so many primitives.
 inline double per_ray(const PrimitiveCost& cost, bool coherent, double primitives) {
   const double* c = coherent ? cost.coherent : cost.scattered;
-  return c[0] + c[1] * std::log2(std::max(primitives, 1.0));
+  return primitives > 1 ? c[0] + c[1] * std::log2(primitives) : c[0];
 }
 
 /// What is done without a plan: embree at robust.

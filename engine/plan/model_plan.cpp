@@ -8,28 +8,37 @@
 namespace rayengine {
 namespace {
 
-constexpr std::uint32_t smallest_mesh = 256;  // triangles: with fewer there is nothing to gain
-constexpr double least_share = 0.5;           // of a mesh's patches, for looking at all of it to pay
-constexpr double parts_share = 0.5;           // of what lies on quadrics, about what has an outline that fits one
-constexpr double left_per_area = 0.5;         // triangles left in a square of the allowance's side, by clustering
-constexpr double recall_seconds = 1e-8;       // a triangle, to look whether anything is kept that was made of it
+constexpr double least_share = 0.5;      // of a mesh's patches, for looking at all of it to pay
+constexpr double parts_share = 0.5;      // of what lies on quadrics, about what has an outline that fits one
+constexpr double left_per_area = 0.5;    // triangles left in a square of the allowance's side, by clustering
+constexpr double recall_seconds = 1e-8;  // a triangle, to look whether anything is kept that was made of it
 
 struct Option {
   Representation representation = Representation::kept;
   double seconds = 0;
 };
 
+/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two,
+/// so that a camera that moves a little finds those that were kept.
+double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
+
 /// Weighs the representations of one object.
 class Options {
  public:
   Options(const ObjectStatistics& object, double allowed, const SceneStatistics& scene,
-          const DeviceMeasurements& device, const Effort& effort)
-      : object_(object), allowed_(allowed), scene_(scene), device_(device), effort_(effort) {}
+          const DeviceMeasurements& device, const TracerCost& usual, const Effort& effort)
+      : object_(object),
+        allowed_(allowed),
+        scene_(scene),
+        device_(device),
+        usual_(usual),
+        effort_(effort),
+        kept_{Representation::kept, seconds(object.triangles)} {}
 
-  Option kept() const { return {Representation::kept, seconds(object_.triangles)}; }
+  const Option& kept() const { return kept_; }
 
   Option best() const {
-    Option best = kept();
+    Option best = kept_;
     if (object_.triangles < smallest_mesh || !(allowed_ > 0)) return best;
     if (effort_.recognise) return {Representation::recognised_parts, seconds(object_.triangles) + looking()};
     for (const Option& option : {pieces(), parts(), coarser()}) take_cheaper(best, option);
@@ -40,13 +49,12 @@ class Options {
 
  private:
   void take_cheaper(Option& best, const Option& option) const {
-    if (option.seconds < std::min(worthwhile * kept().seconds, best.seconds)) best = option;
+    if (option.seconds < std::min(worthwhile * kept_.seconds, best.seconds)) best = option;
   }
 
   /// To build so many triangles, and to ask the rays that an object as large as this may catch.
   double seconds(double triangles) const {
-    const TracerCost& usual = usual_tracer(device_);
-    return triangles * usual.triangle.build + rays() * per_ray(usual.triangle, scene_.coherent, triangles);
+    return triangles * usual_.triangle.build + rays() * per_ray(usual_.triangle, scene_.coherent, triangles);
   }
 
   double rays() const {
@@ -70,7 +78,8 @@ class Options {
 
   double triangles_left() const {
     const double area = object_.triangles * object_.spacing * object_.spacing / 2;
-    return std::min<double>(object_.triangles, left_per_area * area / (allowed_ * allowed_));
+    const double allowed = rounded(allowed_);
+    return std::min<double>(object_.triangles, left_per_area * area / (allowed * allowed));
   }
   Option coarser() const {
     return {Representation::simplified,
@@ -84,7 +93,9 @@ class Options {
   double allowed_;
   const SceneStatistics& scene_;
   const DeviceMeasurements& device_;
+  const TracerCost& usual_;
   const Effort& effort_;
+  const Option kept_;
 };
 
 /// What was chosen for all objects of one kind of representation.
@@ -179,10 +190,6 @@ std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics&
       "building the same again takes longer than rays do among instances"};
 }
 
-/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two,
-/// so that a camera that moves a little finds those that were kept.
-double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
-
 bool is_coarser(Representation r) { return r == Representation::prepared || r == Representation::simplified; }
 
 }  // namespace
@@ -196,11 +203,14 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
     plan.find_repeats = true;
     plan.choices.push_back(*choice);
   }
+  const TracerCost& usual = usual_tracer(device);
+  plan.objects.reserve(scene.objects.size());
+  plan.allowances.reserve(scene.objects.size());
   std::array<Tally, representation_names.size()> tallies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const ObjectStatistics& o = scene.objects[i];
     const double allowed = model_share * allowance(tolerance, o, scene.pixel);
-    const Options options(o, rounded(allowed), scene, device, effort);
+    const Options options(o, allowed, scene, device, usual, effort);
     const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
     plan.objects.push_back(best.representation);
     plan.allowances.push_back(is_coarser(best.representation) ? rounded(allowed) : allowed);

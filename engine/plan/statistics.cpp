@@ -18,13 +18,13 @@ constexpr std::size_t enough_patches = 24, fewest_patches = 4, most_patches = 10
 
 /// Of every object.
 std::vector<Box> bounds_of_objects(const Geometry& g) {
-  std::vector<Box> boxes;
+  std::vector<Box> boxes(g.objects.size());
   auto mesh = g.mesh_bounds.begin();
-  for (const Object& o : g.objects)
-    boxes.push_back(o.kind == Object::Kind::mesh      ? *mesh++
-                    : o.kind == Object::Kind::quadric ? bounds(g, g.quadrics[o.first])
-                                                      : Box{});
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (g.objects[i].kind == Object::Kind::mesh) boxes[i] = *mesh++;
   for (const Instance& i : g.instances) boxes[i.object].add(bounds(g, i));
+  tbb::parallel_for(std::size_t{0}, g.quadrics.size(),
+                    [&](std::size_t i) { boxes[g.quadrics[i].object] = bounds(g, g.quadrics[i]); });
   return boxes;
 }
 
@@ -52,8 +52,9 @@ ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const Box& box
     result.thickness = thickness(g.quadrics[o.first], result.radius);
   }
   if (o.kind == Object::Kind::mesh) {
-    const Patches seen = look_at_patches(g, object, patches);
     result.triangles = primitive_count(g, object);
+    if (result.triangles < smallest_mesh) return result;
+    const Patches seen = look_at_patches(g, object, patches);
     result.spacing = std::sqrt(2 * seen.area);
     result.quadric_share = seen.quadric_share;
     result.ball_share = seen.ball_share;
@@ -74,8 +75,8 @@ SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent
   SceneStatistics result;
   result.objects.resize(g.objects.size());
   const std::vector<Box> boxes = bounds_of_objects(g);
-  const auto patches = static_cast<std::uint32_t>(
-      std::clamp(most_patches / std::max(g.mesh_bounds.size(), std::size_t{1}), fewest_patches, enough_patches));
+  const auto meshes = std::max<std::size_t>(g.mesh_bounds.size(), 1);
+  const auto patches = static_cast<std::uint32_t>(std::clamp(most_patches / meshes, fewest_patches, enough_patches));
   tbb::parallel_for(std::size_t{0}, g.objects.size(), [&](std::size_t i) {
     result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), boxes[i], camera.from, patches);
   });

@@ -17,16 +17,21 @@ struct Tolerance {
 /// Throws Error unless it is a number and not negative.
 void check(const Tolerance& tolerance);
 
+/// Triangles of a mesh below which there is nothing to gain by another representation, and its patches are not looked
+/// at.
+inline constexpr std::uint32_t smallest_mesh = 256;
+
 /// What a plan must know of one object. Lengths in units of the scene.
 struct ObjectStatistics {
   Object::Kind kind = Object::Kind::mesh;
-  QuadricType type = QuadricType::sphere;    ///< of quadrics
-  std::uint32_t triangles = 0;               ///< of meshes
-  double radius = 0;                         ///< half the diagonal of its bounds; infinite where it has none
-  double thickness = 0;                      ///< the least semi-axis of a quadric
-  double distance = 0;                       ///< from the eye to its bounds; 0 within them
-  double spacing = 0;                        ///< side of a square as large as a mesh's triangle and its neighbour
-  double quadric_share = 0, ball_share = 0;  ///< of a mesh's patches: as in Patches
+  QuadricType type = QuadricType::sphere;  ///< of quadrics
+  std::uint32_t triangles = 0;             ///< of meshes
+  double radius = 0;                       ///< half the diagonal of its bounds; infinite where it has none
+  double thickness = 0;                    ///< the least semi-axis of a quadric
+  double distance = 0;                     ///< from the eye to its bounds; 0 within them
+  // Of meshes that are not too small:
+  double spacing = 0;                        ///< side of a square as large as a triangle and its neighbour
+  double quadric_share = 0, ball_share = 0;  ///< of the patches: as in Patches
 };
 
 /// What a plan must know of a scene.

@@ -116,10 +116,13 @@ double predicted_seconds(const SceneStatistics& scene, const TracerCost& cost) {
 }
 
 double predicted_error(const SceneStatistics& scene, const TracerCost& cost, const Tolerance& tolerance) {
+  if (cost.precision == Precision::certified) return 0;
   double largest = 0;
-  for (const ObjectStatistics& o : scene.objects)
+  for (const ObjectStatistics& o : scene.objects) {
     largest = std::max(largest, in_units(position_error(o, scene, cost), o, scene, tolerance.unit));
-  return cost.precision == Precision::certified ? 0 : largest;
+    if (largest == infinity) break;
+  }
+  return largest;
 }
 
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,

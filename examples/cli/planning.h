@@ -25,7 +25,7 @@ void add_tolerance(CLI::App* app, PlanningOptions& options);
 /// These, and `--verify`.
 void add_planning(CLI::App* app, PlanningOptions& options);
 
-/// What a plan is made with here: the loader's simplifier, and the machine as `rayengine plan --measure` found it.
+/// What a plan is made with here: the loader's tools, and the machine as `rayengine plan --measure` found it.
 class PlanSource {
  public:
   PlanSource(const PlanningOptions& options, const Common& common);
