@@ -64,7 +64,9 @@ class EmbreeTracer final : public Tracer {
   double build_seconds() const override { return scene_.build_seconds(); }
   std::size_t bytes() const override { return scene_.bytes() + (filtering_ ? filtering_->bytes() : 0); }
   Limits limits() const override {
-    return {.triangle_roundoff = 0x1p-24, .quadric_roundoff = precision_ == Precision::fast ? 0x1p-24 : 0x1p-53};
+    return {.batch = 2048,
+            .triangle_roundoff = 0x1p-24,
+            .quadric_roundoff = precision_ == Precision::fast ? 0x1p-24 : 0x1p-53};
   }
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) override;

@@ -41,7 +41,7 @@ glm::dvec3 CameraFrame::direction(double x, double y) const {
 
 Ray CameraFrame::ray(double x, double y) const {
   const glm::dvec3 d = direction(x, y);
-  return {from_, 0, d / std::sqrt(glm::dot(d, d)), infinity};
+  return {from_, 0, (1 / std::sqrt(glm::dot(d, d))) * d, infinity};
 }
 
 Ray camera_ray(const Camera& camera, double x, double y) { return CameraFrame(camera).ray(x, y); }

@@ -50,9 +50,10 @@ void TileRenderer::sample(int first, int last) {
 }
 
 void TileRenderer::write_colors(Image& image) const {
+  const double share = 1.0 / options_.spp;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     float* out = image.pixel(pixels_[i].x, pixels_[i].y);
-    for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(colors_[i][c] / options_.spp);
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(colors_[i][c] * share);
     out[3] = 1;
   }
 }
