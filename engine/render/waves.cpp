@@ -166,8 +166,11 @@ void Waves::shine(const Light& light, RayClass ray_class) {
     if (!(glm::dot(p.normal, to_light) > 0)) continue;
     const glm::vec3 unit(to_light * (1 / std::sqrt(glm::dot(to_light, to_light))));
     const Material& material = picture_.materials[p.material];
-    const glm::vec3 seen = p.path.weight * light.color * reflected_light(material, glm::vec3(p.normal), unit, p.view);
-    if (seen != glm::vec3(0)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
+    const glm::vec3 share = p.path.weight * reflected_light(material, glm::vec3(p.normal), unit, p.view);
+    const glm::vec3 seen = share * light.color;
+    if (seen == glm::vec3(0)) continue;
+    // Neither of a light as bright as white nor of this one: dim lights count against others that may be dim, too.
+    if (matters(share) || matters(seen)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
   }
   if (shadow_.size > 0) add_unshadowed(ray_class);
 }
