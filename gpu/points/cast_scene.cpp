@@ -60,13 +60,14 @@ Sources CastScene::ray_sources() const {
   return (options_.naive ? naive_sources : grid_walk_sources) +
          Sources{"accel/kernels/highlight.glsl", "gpu/shaders/points/ray.glsl",
                  options_.fat ? "gpu/shaders/points/fat.glsl" : "gpu/shaders/points/packed.glsl",
-                 "gpu/shaders/points/view.glsl"};
+                 "gpu/shaders/points/view.glsl", "gpu/shaders/shade.glsl"};
 }
 
-Sources CastScene::shading_sources() { return {"gpu/shaders/shade.glsl", "gpu/shaders/points/surface.glsl"}; }
+Sources CastScene::shading_sources() { return {"gpu/shaders/points/surface.glsl", "gpu/shaders/points/brought.glsl"}; }
 
 std::vector<std::string> CastScene::defines() const {
-  std::vector<std::string> result{"LIGHTS=" + std::to_string(lights_), grid_tests(gridded_.textures.types())};
+  std::vector<std::string> result{"LIGHTS=" + std::to_string(lights_), "TARGETS=" + std::to_string(targets()),
+                                  grid_tests(gridded_.textures.types())};
   if (options_.fat) result.push_back("FAT");
   if (shadows()) result.push_back("SHADOWS");
   if (options_.reflections > 0) result.push_back("REFLECTIONS");

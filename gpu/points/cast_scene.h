@@ -24,6 +24,8 @@ class CastScene {
   const PointsOptions& options() const { return options_; }
   GLsizei lights() const { return lights_; }
   bool shadows() const { return options_.shadows && lights_ > 0; }
+  /// Whether rays follow others.
+  bool followed() const { return shadows() || options_.reflections > 0; }
   /// Where nothing is put out again, a single target will do.
   GLsizei targets() const { return shadows() ? 1 + lights_ : 1; }
   GLsizei layers() const { return shadows() ? 1 + options_.reflections : 1; }

@@ -34,44 +34,48 @@ void draw_to_all(const Framebuffer& frame, GLsizei targets) {
 
 }  // namespace
 
-LayeredTarget::Target::Target(GLuint layers, GLuint first, GLuint count) : view(generate_texture()) {
-  glTextureView(view.id(), GL_TEXTURE_2D_ARRAY, layers, GL_RGBA32F, 0, 1, first, count);
+LayeredTarget::View::View(GLuint layers, GLuint first, GLuint count) : object(generate_texture()) {
+  glTextureView(object.id(), GL_TEXTURE_2D_ARRAY, layers, GL_RGBA32F, 0, 1, first, count);
 }
 
 LayeredTarget::LayeredTarget(GLsizei width, GLsizei height, GLsizei targets, GLsizei generations)
-    : layers_(create_layers(width, height, targets * generations)),
-      sum_(make_screen_program("sum", {0, {"gpu/shaders/points/sum.frag.glsl"}, {}})) {
-  single_.resize(static_cast<std::size_t>(generations));
+    : targets_(targets), single_(static_cast<std::size_t>(generations)) {
+  if (is_sum()) return;
+  layers_ = TextureObject(create_layers(width, height, targets * generations));
+  sum_.emplace(make_screen_program("sum", {0, {"gpu/shaders/points/sum.frag.glsl"}, {}}));
   for (Framebuffer& frame : single_) frame = make_framebuffer();
   for (GLuint i = 0; i < static_cast<GLuint>(targets); ++i) {
+    const GLenum attachment = GL_COLOR_ATTACHMENT0 + i;
     const auto count = static_cast<GLuint>(generations);
-    const GLuint view = targets_.emplace_back(layers_.id(), i * count, count).view.id();
-    glNamedFramebufferTexture(all_.id(), GL_COLOR_ATTACHMENT0 + i, view, 0);
+    const GLuint view = views_.emplace_back(layers_.id(), i * count, count).object.id();
+    glNamedFramebufferTexture(all_.id(), attachment, view, 0);
     for (GLint g = 0; g < generations; ++g)
-      glNamedFramebufferTextureLayer(single_[static_cast<std::size_t>(g)].id(), GL_COLOR_ATTACHMENT0 + i, view, 0, g);
+      glNamedFramebufferTextureLayer(single_[static_cast<std::size_t>(g)].id(), attachment, view, 0, g);
   }
   draw_to_all(all_, targets);
   for (const Framebuffer& frame : single_) draw_to_all(frame, targets);
 }
 
-void LayeredTarget::begin() const {
+void LayeredTarget::begin(GLuint framebuffer) const {
   const std::array<GLfloat, 4> nothing{};
-  glBindFramebuffer(GL_FRAMEBUFFER, all_.id());
-  for (GLint i = 0; i < static_cast<GLint>(targets_.size()); ++i)
-    glClearNamedFramebufferfv(all_.id(), GL_COLOR, i, nothing.data());
+  const GLuint target = is_sum() ? framebuffer : all_.id();
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
+  for (GLint i = 0; i < targets_; ++i) glClearNamedFramebufferfv(target, GL_COLOR, i, nothing.data());
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC_ALPHA);
 }
 
 void LayeredTarget::choose(GLsizei generation) const {
+  if (is_sum()) return;
   glBindFramebuffer(GL_FRAMEBUFFER, single_[static_cast<std::size_t>(generation)].id());
 }
 
 void LayeredTarget::add_up(GLuint framebuffer) const {
   glDisable(GL_BLEND);
+  if (is_sum()) return;
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glBindTextureUnit(0, layers_.id());
-  sum_.use();
+  sum_->use();
   draw_everywhere();
 }
 

@@ -27,7 +27,7 @@ struct PointsOptions {
   };
   Method method = Method::points;
   bool naive = false;   ///< every ray against every triangle, instead of through the scene's grid
-  bool fat = false;     ///< vertices of 64 bytes, as the paper has them, where 32 will do
+  bool fat = false;     ///< vertices of 64 bytes, shaded in fragments, as the paper has them, where 32 will do
   bool shadows = true;  ///< rays to the lights
   int reflections = 0;  ///< how many may follow each other
   double room = 0;      ///< rays that vertex buffers hold, for each pixel; 0 for all that can come
@@ -36,7 +36,8 @@ struct PointsOptions {
 
 /// Whole pictures by the points tracer's pipeline. Source: Ralovich, Magdics, "Recursive Ray Tracing in Geometry
 /// Shader" (2010): the vertex shader intersects rays, which are points; the geometry shader shows them and emits those
-/// that follow, which transform feedback takes to the next pass; the fragment shader shades, and blending composites.
+/// that follow, which transform feedback takes to the next pass; blending composites. Large vertices are shaded in the
+/// fragment shader, as in the paper; small ones before they are drawn, where devices have more of them in step.
 /// Every pass is issued at once, without queries in between.
 ///
 /// The paper composites one light and one reflection. Here each light has a render target of its own beside one for

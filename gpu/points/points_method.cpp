@@ -13,15 +13,22 @@ namespace {
 
 enum Location : GLint { reflects_location = 24, sees_background_location, generation_location };
 
+/// Small vertices that none follow need less handed on from stage to stage.
+bool only_casts(const CastScene& scene) { return !scene.options().fat && !scene.followed(); }
+
 Program make_program(const CastScene& scene) {
+  const Sources end = CastScene::shading_sources();
   const auto stage = [&](GLenum type, const Sources& sources) {
     return Stage{type, scene.ray_sources() + sources, scene.defines()};
   };
-  return Program(
-      "points",
-      {stage(GL_VERTEX_SHADER, CastScene::tracing_sources() + Sources{"gpu/shaders/points/points.vert.glsl"}),
-       stage(GL_GEOMETRY_SHADER, CastScene::shading_sources() + Sources{"gpu/shaders/points/points.geom.glsl"}),
-       stage(GL_FRAGMENT_SHADER, CastScene::shading_sources() + Sources{"gpu/shaders/points/points.frag.glsl"})});
+  const bool casts = only_casts(scene);
+  const std::string_view vertex =
+      casts ? "gpu/shaders/points/casting.vert.glsl" : "gpu/shaders/points/points.vert.glsl";
+  const std::string_view geometry =
+      casts ? "gpu/shaders/points/casting.geom.glsl" : "gpu/shaders/points/points.geom.glsl";
+  return Program("points", {stage(GL_VERTEX_SHADER, CastScene::tracing_sources() + end + Sources{vertex}),
+                            stage(GL_GEOMETRY_SHADER, end + Sources{geometry}),
+                            stage(GL_FRAGMENT_SHADER, end + Sources{"gpu/shaders/points/points.frag.glsl"})});
 }
 
 /// The vertex shader alone, whose results decide where off the screen points lie.
@@ -46,7 +53,7 @@ class PointsMethod : public CastMethod {
   }
 
   void draw(const CastView& view, GLuint framebuffer) override {
-    target_.begin();
+    target_.begin(framebuffer);
     draw_passes(view);
     target_.add_up(framebuffer);
   }
@@ -107,8 +114,10 @@ class PointsMethod : public CastMethod {
   }
 
   void draw_pass(int pass) const {
-    glUniform1i(reflects_location, pass < scene_.options().reflections);
-    glUniform1i(generation_location, pass);
+    if (!only_casts(scene_)) {
+      glUniform1i(reflects_location, pass < scene_.options().reflections);
+      glUniform1i(generation_location, pass);
+    }
     draw_points(pass);
   }
 

@@ -30,12 +30,11 @@ class VertexMethod : public CastMethod {
         program_(make_program(scene)),
         target_(view.width, view.height, scene.targets(), scene.layers()),
         fresh_(fresh_rays(format(), view)) {
-    for (int i = 0; i < 2 && (scene.shadows() || scene.options().reflections > 0); ++i)
-      streams_.emplace_back(fresh_.capacity(), format());
+    for (int i = 0; i < 2 && scene.followed(); ++i) streams_.emplace_back(fresh_.capacity(), format());
   }
 
   void draw(const CastView& view, GLuint framebuffer) override {
-    target_.begin();
+    target_.begin(framebuffer);
     scene_.use(program_, view);
     glUniform1i(sees_background_location, scene_.sees_background());
     const PointStream* from = &fresh_;

@@ -15,12 +15,15 @@ struct Finish {
   float reflect;
 };
 
-Finish finish_of(uint rank) {
-  int material = 2 * int(texelFetch(owners, int(rank)).x);
-  vec4 a = texelFetch(materials, material);
-  vec4 b = texelFetch(materials, material + 1);
+uint material_of(uint rank) { return texelFetch(owners, int(rank)).x; }
+
+Finish finish_of_material(uint material) {
+  vec4 a = texelFetch(materials, 2 * int(material));
+  vec4 b = texelFetch(materials, 2 * int(material) + 1);
   return Finish(a.rgb, a.a, b.x, b.y, b.z, b.w);
 }
+
+Finish finish_of(uint rank) { return finish_of_material(material_of(rank)); }
 
 // All the way to a light that has a place, else a direction of unit length.
 vec3 towards_light(int light, vec3 position) {

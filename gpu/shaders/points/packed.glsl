@@ -2,7 +2,8 @@
 // the role (4 bits); the direction, with the weight. A ray that sees has no end, and one to a light ends at t = 1.
 #define BUFFERED 2
 #define CARRIED 3
-#define SHOWN 2
+#define SHOWN TARGETS
+#define SHOWN_TYPE vec4
 
 const uint fresh_role = 15u;
 
@@ -21,7 +22,8 @@ Ray from_buffer(uvec4 r[BUFFERED]) {
   ray.origin = uintBitsToFloat(r[0].xyz);
   ray.direction = uintBitsToFloat(r[1].xyz);
   ray.t = ray.role == sees ? far_away : 1;
-  ray.index = none;
+  ray.material = none;
+  ray.normal = vec3(0);
   return ray;
 }
 
@@ -30,12 +32,16 @@ uvec4[BUFFERED] buffered_of(Ray ray) {
                          uvec4(floatBitsToUint(ray.direction), floatBitsToUint(ray.weight)));
 }
 
+// Of a ray that was intersected its end matters, and no longer where it began.
+vec3 end_of(Ray ray) { return ray.origin + ray.t * ray.direction; }
+
 Ray from_carried(uvec4 r[CARRIED]) {
   Ray ray;
   ray.origin = uintBitsToFloat(r[0].xyz);
-  ray.t = uintBitsToFloat(r[0].w);
+  ray.t = 0;
   ray.direction = uintBitsToFloat(r[1].xyz);
-  ray.index = r[1].w;
+  ray.material = r[1].w;
+  ray.normal = uintBitsToFloat(uvec3(r[0].w, r[2].zw));
   set_place(ray, r[2].x);
   ray.weight = uintBitsToFloat(r[2].y);
   ray.state = waiting;
@@ -43,27 +49,7 @@ Ray from_carried(uvec4 r[CARRIED]) {
 }
 
 uvec4[CARRIED] carried_of(Ray ray) {
-  return uvec4[CARRIED](uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.t)),
-                        uvec4(floatBitsToUint(ray.direction), ray.index),
-                        uvec4(place_of(ray), floatBitsToUint(ray.weight), 0, 0));
-}
-
-// What the fragment shader needs: the position in place of what led there, and the role in place of a shadow ray's weight.
-uvec4[SHOWN] shown_of(Ray ray) {
-  float weight = ray.role == sees ? ray.weight : -float(ray.role);
-  return uvec4[SHOWN](uvec4(floatBitsToUint(ray.origin + ray.t * ray.direction), ray.index),
-                      uvec4(floatBitsToUint(ray.direction), floatBitsToUint(weight)));
-}
-
-Ray from_shown(uvec4 r[SHOWN]) {
-  Ray ray;
-  ray.pixel = uvec2(0);
-  ray.state = finished;
-  ray.origin = uintBitsToFloat(r[0].xyz);
-  ray.t = 0;
-  ray.index = r[0].w;
-  ray.direction = uintBitsToFloat(r[1].xyz);
-  ray.weight = uintBitsToFloat(r[1].w);
-  ray.role = ray.weight < 0 ? uint(-ray.weight) : sees;
-  return ray;
+  uvec3 normal = floatBitsToUint(ray.normal);
+  return uvec4[CARRIED](uvec4(floatBitsToUint(end_of(ray)), normal.x), uvec4(floatBitsToUint(ray.direction), ray.material),
+                        uvec4(place_of(ray), floatBitsToUint(ray.weight), normal.yz));
 }

@@ -1,30 +1,12 @@
-// What a ray that was intersected brings to its pixel. Blending adds it to alpha times what is there: rays that see keep what is
-// there, and one that finds its light hidden puts out what that light had brought, which has a target of its own.
-layout(location = 0) flat in uvec4 shown[SHOWN];
-uniform vec3 background;
-layout(location = 0) out vec4 base;
-#ifdef SHADOWS
-layout(location = 1) out vec4 lit[LIGHTS];
-#endif
+// What comes to the targets of a pixel. Of large vertices it is worked out here, as in the paper. Of small ones it comes with the
+// point: devices shade several vertices in step, but of several pixels only that which the point covers.
+layout(location = 0) flat in SHOWN_TYPE shown[SHOWN];
+layout(location = 0) out vec4 color[TARGETS];
 
 void main() {
-  Ray ray = from_shown(shown);
-  base = vec4(0, 0, 0, 1);
-#ifdef SHADOWS
-  for (int i = 0; i < LIGHTS; ++i) lit[i] = vec4(0, 0, 0, ray.role == uint(i) + 1u ? 0 : 1);
-#endif
-  if (ray.role != sees) return;
-  if (ray.index == none) {
-    base.rgb = ray.weight * background;
-    return;
-  }
-  Surface surface = surface_of(ray);
-  base.rgb = unlit(ray, surface);
-  for (int i = 0; i < LIGHTS; ++i) {
-#ifdef SHADOWS
-    lit[i].rgb = lit_by(i, ray, surface);
+#ifdef FAT
+  color = brought_by(from_record(shown));
 #else
-    base.rgb += lit_by(i, ray, surface);
+  color = shown;
 #endif
-  }
 }

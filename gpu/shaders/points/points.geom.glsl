@@ -22,11 +22,11 @@ void send(Ray ray) {
   EmitVertex();
 }
 #else
-layout(stream = 0, location = 0) flat out uvec4 shown[SHOWN];
-layout(stream = 1, location = 2, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 32) flat out uvec4 sent[BUFFERED];
+layout(stream = 0, location = 0) flat out vec4 shown[SHOWN];
+layout(stream = 1, location = SHOWN, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 32) flat out uvec4 sent[BUFFERED];
 
 void show(Ray ray) {
-  shown = shown_of(ray);
+  shown = brought_by(ray);
   EmitStreamVertex(0);
 }
 
@@ -45,7 +45,7 @@ void place(Ray ray) {
 
 void main() {
   Ray ray = from_carried(carried[0]);
-  bool hit = ray.index != none;
+  bool hit = ray.material != none;
   if (ray.state != waiting || !(hit || (ray.role == sees && sees_background))) return;
   place(ray);
   show(ray);

@@ -8,6 +8,6 @@ void main() {
   if (ray.state == waiting) trace(ray);
   carried = carried_of(ray);
 #ifdef NOTHING_FOLLOWS
-  gl_Position = vec4(2 + abs(ray.t), float(ray.index), 0, 1);  // off the screen, yet not known before
+  gl_Position = vec4(2 + abs(ray.t), float(ray.material), 0, 1);  // off the screen, yet not known before
 #endif
 }

@@ -16,6 +16,7 @@ struct Ray {
   float weight;  // what reflections leave of what it sees
   vec3 origin;
   vec3 direction;
-  float t;     // where it ends; of the nearest hit, once it is intersected
-  uint index;  // of the hit primitive's first texel, or none
+  float t;        // where it ends; of the nearest hit, once it is intersected
+  uint material;  // of what was hit, or none
+  vec3 normal;    // there, of unit length
 };

@@ -1,6 +1,5 @@
 // The baseline: all of a pixel's rays in one loop of one fragment shader.
 layout(location = 24) uniform int reflections;
-uniform vec3 background;
 layout(location = 0) out vec4 color;
 
 vec3 seen_of_lights(Ray ray, Surface surface) {
@@ -10,7 +9,7 @@ vec3 seen_of_lights(Ray ray, Surface surface) {
     Ray next = shadow_ray(ray, surface, i);
     if (next.state != waiting) continue;
     trace(next);
-    if (next.index != none) continue;
+    if (next.material != none) continue;
 #endif
     sum += lit_by(i, ray, surface);
   }
@@ -22,7 +21,7 @@ void main() {
   color = vec4(0, 0, 0, 1);
   for (int generation = 0; ray.state == waiting; ++generation) {
     trace(ray);
-    if (ray.index == none) {
+    if (ray.material == none) {
       color.rgb += ray.weight * background;
       break;
     }

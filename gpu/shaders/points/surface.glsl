@@ -10,12 +10,11 @@ struct Surface {
 const float least_weight = 1.0 / 2048;
 
 Surface surface_of(Ray ray) {
-  vec3 normal = triangle_normal(int(ray.index));
   Surface s;
   s.position = ray.origin + ray.t * ray.direction;
-  s.normal = dot(normal, ray.direction) > 0 ? -normal : normal;
+  s.normal = dot(ray.normal, ray.direction) > 0 ? -ray.normal : ray.normal;
   s.view = -normalize(ray.direction);
-  s.finish = finish_of(texelFetch(triangles, int(ray.index)).w);
+  s.finish = finish_of_material(ray.material);
   return s;
 }
 
@@ -24,14 +23,14 @@ Ray shadow_ray(Ray ray, Surface s, int light) {
   vec3 origin = s.position + clearance * s.normal;
   bool has_place = texelFetch(lights, 2 * light).w != 0;
   vec3 way = towards_light(light, origin) * (has_place ? 1 : 16);  // out of the scene
-  return Ray(ray.pixel, dot(way, s.normal) > 0 ? waiting : finished, uint(light) + 1u, 1, origin, way, 1, none);
+  return Ray(ray.pixel, dot(way, s.normal) > 0 ? waiting : finished, uint(light) + 1u, 1, origin, way, 1, none, vec3(0));
 }
 
 // Not waiting when it would bring nothing.
 Ray reflected_ray(Ray ray, Surface s) {
   float weight = ray.weight * s.finish.reflect;
   return Ray(ray.pixel, weight >= least_weight ? waiting : finished, sees, weight, s.position + clearance * s.normal,
-             reflect(-s.view, s.normal), far_away, none);
+             reflect(-s.view, s.normal), far_away, none, vec3(0));
 }
 
 // What a ray sees of the light that the surface reflects, were it not in shadow.

@@ -23,5 +23,6 @@ void trace(inout Ray ray) {
   find();
   if (best_rank == none) return;
   ray.t = best_t;
-  ray.index = uint(nearest);
+  ray.material = material_of(best_rank);
+  if (ray.role == sees) ray.normal = triangle_normal(nearest);
 }

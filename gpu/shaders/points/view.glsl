@@ -7,7 +7,7 @@ layout(location = 23) uniform vec2 screen_size;  // in pixels
 
 Ray eye_ray(uvec2 pixel) {
   vec3 direction = view_corner + float(pixel.x) * view_right + float(pixel.y) * view_down;
-  return Ray(pixel, waiting, sees, 1, eye, normalize(direction), far_away, none);
+  return Ray(pixel, waiting, sees, 1, eye, normalize(direction), far_away, none, vec3(0));
 }
 
 vec4 screen_position(uvec2 pixel) { return vec4((2 * vec2(pixel) + 1) / screen_size - 1, 0, 1); }
