@@ -48,7 +48,7 @@ Scene balls() {
   for (int i = 0; i < 27; ++i)
     builder.add(unit_sphere, 0, Affine::translate({3. * (i % 3), 3. * (i / 3 % 3), 3. * (i / 9)}));
   Scene scene = scene_of(builder, {.color = {1, 0.8f, 0.6f}, .reflect = 0.4f},
-                         {.from = {3, -14, 8}, .at = {3, 3, 3}, .up = {0, 0, 1}, .fov = 45, .size = {240, 180}});
+                         {.from = {3, -14, 8}, .at = {3, 3, 3}, .up = {0, 0, 1}, .fov = 45, .size = {160, 120}});
   scene.lights = {point_light({10, -10, 20})};
   return scene;
 }
@@ -75,6 +75,9 @@ class LostContext : public testing::TestWithParam<Case> {
                                  }});
     calls_left = GetParam().calls;
   }
+
+  /// A busy machine may be done before the GPU is asked: then there must be more to do.
+  bool go_on(int done) const { return done < 3 || (done < 20 && GetParam().calls != never && calls_left >= 0); }
 
   /// That it was lost in the middle of the work, and said so in one line; or else that the GPU took part.
   void expect_loss() {
@@ -107,7 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Faults, LostContext,
 TEST_P(LostContext, EveryRayIsAnsweredOnce) {
   std::vector<Hit> right(rays.size());
   make_embree_tracer(scene.geometry, Precision::robust)->closest(rays, right, RayClass::primary);
-  for (int query = 0; query < 3; ++query) {
+  std::size_t queries = 0;
+  for (; go_on(static_cast<int>(queries)); ++queries) {
     std::vector<Hit> hits(rays.size());
     for (Hit& hit : hits) hit.status = 77;  // nobody's answer
     hybrid->closest(rays, hits, RayClass::primary);
@@ -115,10 +119,10 @@ TEST_P(LostContext, EveryRayIsAnsweredOnce) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       wrong += hits[i].object != right[i].object || hits[i].primitive != right[i].primitive ||
                hits[i].status != right[i].status || hits[i].t != right[i].t;
-    EXPECT_EQ(wrong, 0) << "query " << query;
+    EXPECT_EQ(wrong, 0) << "query " << queries;
   }
   const HybridReport report = hybrid->report();
-  EXPECT_EQ(report.cpu_rays + report.gpu_rays, 3 * rays.size());
+  EXPECT_EQ(report.cpu_rays + report.gpu_rays, queries * rays.size());
   expect_loss();
 }
 
@@ -129,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(Faults, RenderInvarianceLostContext,
 TEST_P(RenderInvarianceLostContext, LeavesThePictureAsItIs) {
   const RenderOptions options{.depth = 3, .threads = 2};
   const Image right = render_with("embree", scene, options).image;
-  const Image image = render(scene, *hybrid, options).image;
-  EXPECT_EQ(image.pixels, right.pixels);
+  for (int picture = 0; go_on(picture); ++picture)
+    EXPECT_EQ(render(scene, *hybrid, options).image.pixels, right.pixels) << "picture " << picture;
   expect_loss();
 }
 
