@@ -1,5 +1,7 @@
 #include "gpu/grid/grid_kernels.h"
 
+#include <numeric>
+
 #include "gpu/scene/kernel_program.h"
 
 namespace rayengine {
@@ -129,13 +131,18 @@ GridCounts GridKernels::count_states() const {
   return counts;
 }
 
-/// Runs one kernel after the other, until each has found that no ray waits for it.
-GridWork GridKernels::run_by_turns(const GridTextures& grid, const GridPolicy& policy, bool timed) const {
+/// Runs one kernel after the other, until each has found that no ray waits for it, or that so few do that a loop ends
+/// their ways sooner.
+GridWork GridKernels::run_by_turns(const GridTextures& grid, const GridPolicy& policy, std::size_t few, bool timed) {
   GridWork work;
-  std::size_t idle = 0;
-  for (std::size_t i = 0; idle < states(); i = (i + 1) % states())
-    idle = run_kernel(static_cast<GridState>(i), grid, policy, timed, work) == 0 ? idle + 1 : 0;
-  return work;
+  GridCounts ran{};  // for so many rays in the last pass of each state; no more are under way
+  for (std::size_t i = 0, pass = 1;; i = (i + 1) % states(), ++pass) {
+    ran[i] = run_kernel(static_cast<GridState>(i), grid, policy, timed, work);
+    const std::size_t under_way = std::accumulate(ran.begin(), ran.end(), std::size_t{0});
+    if (pass < states() || under_way > few) continue;
+    if (under_way > 0) draw_single(grid, policy);
+    return work;
+  }
 }
 
 GridWork GridKernels::run_by_counts(const GridTextures& grid, const GridPolicy& policy, bool timed) const {
@@ -156,19 +163,25 @@ std::size_t GridKernels::run_kernel(GridState state, const GridTextures& grid, c
   return rays;
 }
 
-GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy,
-                          bool timed) const {
+GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed) {
   begin(batch, grid);
   update_states();
+  const auto few = static_cast<std::size_t>(policy.few * static_cast<double>(batch.capacity()));
   const bool turns = policy.rule == GridPolicy::Rule::turns;
-  const GridWork work = turns ? run_by_turns(grid, policy, timed) : run_by_counts(grid, policy, timed);
+  const GridWork work = turns ? run_by_turns(grid, policy, few, timed) : run_by_counts(grid, policy, timed);
   end();
   return work;
 }
 
 void GridKernels::run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy) {
-  if (!single_) single_.emplace(make_program("grid", "gpu/shaders/grid/single.frag.glsl", true));
   begin(batch, grid);
+  draw_single(grid, policy);
+  end();
+}
+
+/// A pass in which all rays go all their ways, from wherever they are.
+void GridKernels::draw_single(const GridTextures& grid, const GridPolicy& policy) {
+  if (!single_) single_.emplace(make_program("grid", "gpu/shaders/grid/single.frag.glsl", true));
   use(*single_, grid, policy);
   if (shaded()) shading_.set_uniforms();
   glDepthFunc(GL_ALWAYS);
@@ -176,7 +189,6 @@ void GridKernels::run_single(const StreamBatch& batch, const GridTextures& grid,
   write_targets(bit(hits_target) | bit(gathered_target));
   draw_everywhere();
   glTextureBarrier();
-  end();
 }
 
 }  // namespace rayengine

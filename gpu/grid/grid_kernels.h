@@ -50,7 +50,7 @@ class GridKernels {
               Shading shading = {});
 
   /// Runs passes until no ray waits. `timed` waits for the device after each.
-  GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false) const;
+  GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false);
   /// The same in one pass, with a loop over all of a ray's way.
   void run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy);
 
@@ -66,7 +66,8 @@ class GridKernels {
   std::size_t states() const { return shaded() ? 3 : 2; }
   std::size_t run_kernel(GridState state, const GridTextures& grid, const GridPolicy& policy, bool timed,
                          GridWork& work) const;
-  GridWork run_by_turns(const GridTextures& grid, const GridPolicy& policy, bool timed) const;
+  GridWork run_by_turns(const GridTextures& grid, const GridPolicy& policy, std::size_t few, bool timed);
+  void draw_single(const GridTextures& grid, const GridPolicy& policy);
   GridWork run_by_counts(const GridTextures& grid, const GridPolicy& policy, bool timed) const;
 
   Shading shading_;

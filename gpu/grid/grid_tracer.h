@@ -14,7 +14,7 @@ namespace rayengine {
 struct GridTracerOptions {
   int device = -1;  ///< an EGL device by its number; the best when negative
   GridOptions grid;
-  GridPolicy policy;
+  GridPolicy policy{.few = 0.5};
   bool single_pass = false;          ///< one shader with a loop over a ray's whole way, instead of states and passes
   int batch_side = 0;                ///< a batch holds side x side rays; 0 for what suits the device
   std::vector<std::string> defines;  ///< added to the kernels: how tests break one to see that it is noticed

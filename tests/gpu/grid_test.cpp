@@ -67,6 +67,11 @@ TEST(Grid, PoliciesGiveTheSameAnswers) {
   expect_the_same({.policy = {.rule = GridPolicy::Rule::most, .steps = 2}});
 }
 
+TEST(Grid, PassesAloneGiveTheAnswersOfPassesAndALoop) {
+  expect_the_same({.policy = {.few = 0}});
+  expect_the_same({.policy = {.steps = 2, .few = 0.2}, .batch_side = 64});
+}
+
 TEST(Grid, ResolutionsAndBatchesGiveTheSameAnswers) {
   expect_the_same({.grid = {.density = 0.01}});
   expect_the_same({.grid = {.density = 500}, .batch_side = 16});
