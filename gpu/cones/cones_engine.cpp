@@ -85,7 +85,7 @@ void ConesEngine::write(std::span<const Traveller> travellers) {
     const Traveller& t = i < travellers.size() ? travellers[order_[i].index] : Traveller();
     batch_.origins()[place] = {t.frame.origin, t.frame.tmin};
     batch_.directions()[place] = {t.frame.direction, t.frame.tmax};
-    batch_.entries()[place] = {t.floor_rank, 0, 0, 0};
+    batch_.entries()[place] = {t.floor_rank, 0};
   });
   batch_.upload(travellers.size());
 }

@@ -46,7 +46,7 @@ void GridEngine::upload(std::span<const Traveller> travellers) {
     batch_->origins()[place] = {t.frame.origin, t.frame.tmin};
     batch_->directions()[place] = {t.frame.direction, t.frame.tmax};
     batch_->lists()[place] = start;
-    batch_->entries()[place] = {t.floor_rank, 0, 0, 0};
+    batch_->entries()[place] = {t.floor_rank, 0};
   });
   for (std::size_t i = count; i < batch_->rays_in_blocks(count); ++i)
     batch_->lists()[batch_->place(i)] = {no_id, no_id, done, 0};

@@ -1,5 +1,10 @@
 #include "gpu/stream/stream_batch.h"
 
+#include <algorithm>
+#include <bit>
+#include <glm/packing.hpp>
+#include <limits>
+
 #include "accel/ray.h"
 #include "gpu/scene/kernel_program.h"
 
@@ -8,15 +13,30 @@ namespace {
 
 std::array<Texture, 4> make_inputs(GLsizei side) {
   return {make_texture(GL_RGBA32F, side, side), make_texture(GL_RGBA32F, side, side),
-          make_texture(GL_RGBA32UI, side, side), make_texture(GL_RGBA32UI, side, side)};
+          make_texture(GL_RGBA32UI, side, side), make_texture(GL_RG32UI, side, side)};
+}
+
+/// Of the inputs, in the mapped memory.
+constexpr std::array<GLenum, 4> layouts{GL_RGBA, GL_RGBA, GL_RGBA_INTEGER, GL_RG_INTEGER};
+
+/// The largest number in half precision that is not above t; or, where halves lose digits, one below all, by which no
+/// ray is ever done.
+float half_below(float t) {
+  constexpr float least = 0x1p-14f, most = 65504;
+  if (!(t >= least)) return -std::numeric_limits<float>::infinity();
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::min(t, most)) & ~0x1FFFu);
 }
 
 }  // namespace
 
+std::uint32_t pack_entries(glm::vec2 entries) {
+  return glm::packHalf2x16({half_below(entries.x), half_below(entries.y)});
+}
+
 StreamBatch::StreamBatch(GLsizei side, GLsizei block)
     : side_(side),
       block_(block),
-      upload_(make_mapped_buffer(4 * section(), Mapping::upload)),
+      upload_(make_mapped_buffer(3 * section() + capacity() * sizeof(glm::uvec2), Mapping::upload)),
       read_back_(make_mapped_buffer(capacity() * sizeof(Answer), Mapping::read_back)),
       inputs_(make_inputs(side)),
       hits_(make_texture(GL_RG32UI, side, side)),
@@ -49,9 +69,8 @@ void StreamBatch::upload(std::size_t count) {
   rows_ = static_cast<GLsizei>(rays_in_blocks(count)) / side_;
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_.object.id());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const bool integer = i >= 2;
-    glTextureSubImage2D(inputs_[i].object.id(), 0, 0, 0, side_, rows_, integer ? GL_RGBA_INTEGER : GL_RGBA,
-                        integer ? GL_UNSIGNED_INT : GL_FLOAT, reinterpret_cast<const void*>(i * section()));
+    glTextureSubImage2D(inputs_[i].object.id(), 0, 0, 0, side_, rows_, layouts[i], i < 2 ? GL_FLOAT : GL_UNSIGNED_INT,
+                        reinterpret_cast<const void*>(i * section()));
   }
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   clear();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 #include <span>
@@ -14,6 +15,10 @@ namespace rayengine {
 
 /// Treelets that a ray can take along to the device at once.
 inline constexpr std::uint32_t longest_list = 4;
+
+/// Where a ray enters the second and the third treelet of its list, for the device: in half precision, rounded down.
+/// The fourth goes without: where it is entered, the third has been, and a hit before that ends the ray.
+std::uint32_t pack_entries(glm::vec2 entries);
 
 /// Depths that rays have as states: before any pass, and when they are done.
 inline constexpr float state_start = 0, state_done = 1;
@@ -38,7 +43,7 @@ class StreamBatch {
   std::span<glm::vec4> origins() const { return upload_.as<glm::vec4>(0, capacity()); }
   std::span<glm::vec4> directions() const { return upload_.as<glm::vec4>(section(), capacity()); }
   std::span<glm::uvec4> lists() const { return upload_.as<glm::uvec4>(2 * section(), capacity()); }
-  std::span<glm::uvec4> entries() const { return upload_.as<glm::uvec4>(3 * section(), capacity()); }
+  std::span<glm::uvec2> entries() const { return upload_.as<glm::uvec2>(3 * section(), capacity()); }
 
   /// What they answer: the bits of t, and the rank of what was hit.
   struct Answer {
@@ -64,11 +69,13 @@ class StreamBatch {
   /// The rows in use.
   GLsizei rows() const { return rows_; }
   /// Of the last upload and read-back.
-  std::size_t bytes_carried() const { return rays_in_blocks(count_) * (4 * sizeof(glm::vec4) + sizeof(Answer)); }
+  std::size_t bytes_carried() const { return rays_in_blocks(count_) * bytes_a_ray; }
   /// Waits for the answers. Throws Error when there is no hope of them, or they mean nothing.
   void await(Context& context) const { rayengine::await(*fence_, context); }
 
  private:
+  static constexpr std::size_t bytes_a_ray = 3 * sizeof(glm::vec4) + sizeof(glm::uvec2) + sizeof(Answer);
+
   void clear();
   std::size_t section() const { return capacity() * sizeof(glm::vec4); }
 

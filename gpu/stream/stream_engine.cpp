@@ -107,16 +107,17 @@ void StreamEngine::fill(Slot& slot, Job& job) const {
 /// Puts what the walk found in the form that shaders read.
 void StreamEngine::list(StreamTraveller& t, std::span<const TreeletEntry> found) const {
   t.treelets = glm::uvec4(no_id);
-  t.entries = glm::uvec4(t.floor_rank, 0, 0, 0);
+  glm::vec4 entries{0};
   t.listed = 0;
   if (t.fresh && treelets_.unbounded.size() > 0)
     t.treelets[static_cast<int>(t.listed++)] = unbounded_treelet(treelets_);
   for (const TreeletEntry& entry : found) {
     const double enter = t.frame.to_frame(entry.t);
     t.last_entry = float_below(enter - frame_slack(enter));
-    if (t.listed > 0) t.entries[static_cast<int>(t.listed)] = std::bit_cast<std::uint32_t>(t.last_entry);
+    entries[static_cast<int>(t.listed)] = t.last_entry;
     t.treelets[static_cast<int>(t.listed++)] = entry.treelet;
   }
+  t.entries = {t.floor_rank, pack_entries({entries.y, entries.z})};
   t.fresh = false;
 }
 

@@ -16,10 +16,11 @@ namespace rayengine {
 struct StreamTraveller : Traveller {
   double tmin = 0, tmax = -1;  ///< the ray's own, raised to look behind a hit, and lowered to the best one
   WalkCursor cursor;
-  bool fresh = true;                   ///< has yet to be tested against what has no bounds
-  std::uint32_t listed = 0;            ///< treelets in the batch now
-  glm::uvec4 treelets{0}, entries{0};  ///< as gpu/shaders/stream/ray.glsl has them
-  float last_entry = 0;                ///< where it enters the last of them
+  bool fresh = true;         ///< has yet to be tested against what has no bounds
+  std::uint32_t listed = 0;  ///< treelets in the batch now
+  glm::uvec4 treelets{0};    ///< these two as gpu/shaders/stream/ray.glsl has them
+  glm::uvec2 entries{0};
+  float last_entry = 0;  ///< where it enters the last of them
 };
 
 /// The stream tracer's loop (see make_stream_tracer).

@@ -85,7 +85,7 @@ class Passes {
       const std::size_t place = batch_.place(i);
       batch_.origins()[place] = {ray.origin, ray.tmin};
       batch_.directions()[place] = {ray.direction, ray.tmax};
-      batch_.entries()[place] = glm::uvec4(no_id, 0, 0, 0);
+      batch_.entries()[place] = glm::uvec2(no_id, pack_entries({0, 0}));
     }
   }
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/packing.hpp>
+#include <limits>
 #include <random>
 
 #include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
+#include "gpu/stream/stream_batch.h"
 #include "gpu/stream/stream_order.h"
 #include "gpu/stream/stream_tracer.h"
 
@@ -126,6 +129,21 @@ TEST(Stream, AnEmptySceneIsMissed) {
   std::vector<Hit> hits(1);
   stream->closest(rays, hits, RayClass::primary);
   EXPECT_FALSE(hits[0].hit());
+}
+
+TEST(StreamEntries, AreNeverRoundedUp) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> exponent(-30, 20);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto packed = [](float a, float b) { return glm::unpackHalf2x16(pack_entries({a, b})); };
+  for (int i = 0; i < 10000; ++i) {
+    const float a = std::exp2(exponent(random)), b = -a;
+    const glm::vec2 halves = packed(a, b);
+    EXPECT_LE(halves.x, a);
+    EXPECT_GE(halves.x, a < 0x1p-14f ? -infinity : std::min(a, 65504.f) * (1 - 0x1p-10f));
+    EXPECT_LE(halves.y, b);
+  }
+  EXPECT_EQ(packed(infinity, std::numeric_limits<float>::quiet_NaN()), glm::vec2(65504, -infinity));
 }
 
 TEST(RadixSort, SortsByTheLowBitsAndKeepsTheOrderOfEquals) {

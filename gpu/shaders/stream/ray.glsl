@@ -2,8 +2,8 @@
 layout(binding = 0) uniform sampler2D origins;      // origin, tmin
 layout(binding = 1) uniform sampler2D directions;   // direction, tmax
 layout(binding = 2) uniform usampler2D lists;       // treelets front to back, `none` behind the last
-layout(binding = 3) uniform usampler2D entries;     // x: a hit at tmin counts if its rank is above this; yzw: t (its bits) where
-                                                    // the ray enters the second to fourth treelet
+layout(binding = 3) uniform usampler2D entries;     // x: a hit at tmin counts if its rank is above this; y: t, as two halves, where
+                                                    // the ray enters the second and third treelet
 layout(binding = 4) uniform usampler2D hits;        // the nearest so far: bits of t, and rank; or `none`
 layout(binding = 5) uniform usamplerBuffer ranges;  // of treelet * types + type: first primitive and count
 
