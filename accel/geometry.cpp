@@ -75,6 +75,7 @@ Mesh mesh_of(const Geometry& geometry, std::uint32_t object) {
   Mesh mesh;
   mesh.triangles.assign(given.begin(), given.end());
   const auto [begin, end] = vertex_range(mesh.triangles);
+  mesh.positions.reserve(end - begin);
   for (std::uint32_t v = begin; v < end; ++v) mesh.positions.push_back(geometry.vertex(v));
   if (!geometry.normals.empty()) mesh.normals.assign(geometry.normals.begin() + begin, geometry.normals.begin() + end);
   for (glm::uvec3& t : mesh.triangles) t -= begin;

@@ -9,6 +9,7 @@
 #include "accel/stopwatch.h"
 #include "engine/measure/rays.h"
 #include "engine/measure/tessellate.h"
+#include "engine/plan/coarsen/coarsen.h"
 #include "engine/plan/recognise/recognise.h"
 #include "engine/query.h"
 #include "engine/tracers.h"
@@ -123,7 +124,7 @@ double seconds_each(const Mesh& mesh, const std::function<void()>& work) {
 
 }  // namespace
 
-DeviceMeasurements measure_device(int threads, const std::function<void(const Mesh&, double)>& simplify) {
+DeviceMeasurements measure_device(int threads) {
   DeviceMeasurements device;
   for (const Precision precision : {Precision::fast, Precision::robust})
     device.tracers.push_back(measure("embree", precision, threads));
@@ -133,7 +134,7 @@ DeviceMeasurements measure_device(int threads, const std::function<void(const Me
   device.recognise_whole = seconds_each(ball, [&] { recognise(ball, 0.01, Pieces::whole); });
   device.recognise_parts = seconds_each(tubes, [&] { recognise(tubes, 0.01, Pieces::parts); });
   constexpr double sag = 0.01;  // of a ball of radius 1: far larger than its triangles
-  device.simplify = seconds_each(ball, [&] { simplify(ball, sag); });
+  device.simplify = seconds_each(ball, [&] { coarsen(ball, sag); });
   return device;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/plan/coarsen/coarsen.h"
 #include "engine/plan/repeats.h"
 
 namespace rayengine {
@@ -53,8 +54,10 @@ class ModelBuilder {
       case Representation::recognised: return recognised(Pieces::whole);
       case Representation::recognised_parts: return recognised(Pieces::parts);
       case Representation::recalled: return may_recall(object_) && recalled();
-      case Representation::prepared: return may_recall(object_) && simplified(tools_.recall_simplified);
-      case Representation::simplified: return simplified(tools_.simplify);
+      case Representation::prepared: return recalled_coarser();
+      case Representation::simplified:
+        if (plan_.prepare && tools_.simplify) return coarser(tools_.simplify, kept_allowance(allowed()));
+        return recalled_coarser() || coarser(coarsen, allowed());
       case Representation::instance: break;  // found below, not planned
     }
     return false;
@@ -62,16 +65,15 @@ class ModelBuilder {
 
   bool recognised(Pieces pieces) {
     const Mesh mesh = mesh_of(geometry_, object_);
-    const double allowed = plan_.allowances[object_];
-    return take(mesh, tools_.recognise ? tools_.recognise(mesh, allowed, pieces) : recognise(mesh, allowed, pieces));
+    return take(mesh,
+                tools_.recognise ? tools_.recognise(mesh, allowed(), pieces) : recognise(mesh, allowed(), pieces));
   }
 
   bool recalled() {
     if (!tools_.recall_recognised) return false;
     const Mesh mesh = mesh_of(geometry_, object_);
     for (const Pieces pieces : {Pieces::parts, Pieces::whole})
-      if (const auto found = tools_.recall_recognised(mesh, plan_.allowances[object_], pieces))
-        return take(mesh, *found);
+      if (const auto found = tools_.recall_recognised(mesh, allowed(), pieces)) return take(mesh, *found);
     return false;
   }
 
@@ -89,11 +91,17 @@ class ModelBuilder {
     return true;
   }
 
+  double allowed() const { return plan_.allowances[object_]; }
+
+  bool recalled_coarser() {
+    return may_recall(object_) && tools_.recall_simplified &&
+           coarser(tools_.recall_simplified, kept_allowance(allowed()));
+  }
+
   template <class Find>
-  bool simplified(const Find& find) {
-    if (!find) return false;
+  bool coarser(const Find& find, double distance) {
     const Mesh mesh = mesh_of(geometry_, object_);
-    const std::optional<CoarserMesh> coarser = find(mesh, plan_.allowances[object_]);
+    const std::optional<CoarserMesh> coarser = find(mesh, distance);
     if (!coarser || coarser->mesh.triangles.size() >= mesh.triangles.size()) return false;
     add(coarser->mesh, material());
     Replacement what = replacement(mesh);

@@ -34,7 +34,7 @@ struct CoarserMesh {
 };
 
 /// Makes of meshes what stands in for them, and recalls what was made before: the loader module has such (see
-/// engine/load/mesh_tools.h). Without, no mesh becomes a coarser one, and recognise() finds quadrics anew each time.
+/// engine/load/mesh_tools.h). Without, coarsen() and recognise() do all anew.
 struct MeshTools {
   std::function<CoarserMesh(const Mesh& mesh, double distance)> simplify;
   std::function<std::optional<CoarserMesh>(const Mesh& mesh, double distance)> recall_simplified;

@@ -10,17 +10,15 @@ namespace {
 
 constexpr double least_share = 0.5;      // of a mesh's patches, for looking at all of it to pay
 constexpr double parts_share = 0.5;      // of what lies on quadrics, about what has an outline that fits one
-constexpr double left_per_area = 0.5;    // triangles left in a square of the allowance's side, by clustering
 constexpr double recall_seconds = 1e-8;  // a triangle, to look whether anything is kept that was made of it
+
+// Triangles left in a square of the allowance's side: by coarsen(), and by simplify(), which keeps what it makes.
+constexpr double coarsened_per_area = 1.1, simplified_per_area = 0.5;
 
 struct Option {
   Representation representation = Representation::kept;
   double seconds = 0;
 };
-
-/// Of the tolerance, what a mesh may be moved by to become a coarser one: rounded down to a power of the root of two,
-/// so that a camera that moves a little finds those that were kept.
-double rounded(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
 
 /// Weighs the representations of one object.
 class Options {
@@ -76,18 +74,17 @@ class Options {
     return quadrics(Representation::recalled, parts_share * object_.quadric_share, recall_seconds);
   }
 
-  double triangles_left() const {
+  double triangles_left(double per_area, double allowed) const {
     const double area = object_.triangles * object_.spacing * object_.spacing / 2;
-    const double allowed = rounded(allowed_);
-    return std::min<double>(object_.triangles, left_per_area * area / (allowed * allowed));
+    return std::min<double>(object_.triangles, per_area * area / (allowed * allowed));
   }
+  double simplified() const { return seconds(triangles_left(simplified_per_area, kept_allowance(allowed_))); }
   Option coarser() const {
-    return {Representation::simplified,
-            (effort_.prepare ? 0 : object_.triangles * device_.simplify) + seconds(triangles_left())};
+    return {Representation::simplified, effort_.prepare ? simplified()
+                                                        : object_.triangles * device_.simplify +
+                                                              seconds(triangles_left(coarsened_per_area, allowed_))};
   }
-  Option prepared() const {
-    return {Representation::prepared, object_.triangles * recall_seconds + seconds(triangles_left())};
-  }
+  Option prepared() const { return {Representation::prepared, object_.triangles * recall_seconds + simplified()}; }
 
   const ObjectStatistics& object_;
   double allowed_;
@@ -190,14 +187,14 @@ std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics&
       "building the same again takes longer than rays do among instances"};
 }
 
-bool is_coarser(Representation r) { return r == Representation::prepared || r == Representation::simplified; }
-
 }  // namespace
+
+double kept_allowance(double allowed) { return allowed > 0 ? std::exp2(std::floor(2 * std::log2(allowed)) / 2) : 0; }
 
 ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
                      const Effort& effort) {
   check(tolerance);
-  ModelPlan plan;
+  ModelPlan plan{.prepare = effort.prepare};
   const Repeated repeated = likely_repeats(scene);
   if (const auto choice = instances(repeated, scene, device, tolerance)) {
     plan.find_repeats = true;
@@ -213,7 +210,7 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
     const Options options(o, allowed, scene, device, usual, effort);
     const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
     plan.objects.push_back(best.representation);
-    plan.allowances.push_back(is_coarser(best.representation) ? rounded(allowed) : allowed);
+    plan.allowances.push_back(allowed);
     tallies[static_cast<std::size_t>(best.representation)].add(o, best.seconds, options.kept().seconds);
   }
   for (std::size_t r = 0; r < tallies.size(); ++r)

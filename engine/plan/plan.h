@@ -35,6 +35,7 @@ struct Choice {
 struct ModelPlan {
   std::vector<Representation> objects;  ///< one for each
   std::vector<double> allowances;       ///< how far each may be moved, in units of the scene
+  bool prepare = false;                 ///< whether coarser meshes are made as coarse as can be, and kept
   bool find_repeats = false;            ///< whether meshes that repeat others become instances
   std::vector<Choice> choices;
 };
@@ -54,6 +55,10 @@ struct Effort {
   bool prepare = false;    ///< make what is kept, and pays the next time
   bool recognise = false;  ///< look at every mesh for quadrics
 };
+
+/// What coarser meshes that are kept are made to, of what a mesh may be moved by: rounded down to a power of the root
+/// of two, so that a camera that moves a little finds them.
+double kept_allowance(double allowed);
 
 ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
                      const Effort& effort = {});

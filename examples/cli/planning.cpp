@@ -9,7 +9,6 @@
 
 #include "accel/cache_folder.h"
 #include "engine/load/mesh_tools.h"
-#include "engine/load/simplify.h"
 #include "engine/measure/measure_device.h"
 #include "gpu/device/hardware.h"
 
@@ -192,8 +191,7 @@ Json PlannedScene::json() const {
 }
 
 void measure_machine(const Common& common) {
-  const DeviceMeasurements device =
-      measure_device(common.threads, [](const Mesh& mesh, double distance) { simplify(mesh, distance, 0); });
+  const DeviceMeasurements device = measure_device(common.threads);
   const std::string text = to_text(device);
   const fs::path file = device_file();
   if (file.empty() || !write_cache_file(file, {std::as_bytes(std::span(text))}))

@@ -8,9 +8,11 @@
 #include <random>
 #include <set>
 
+#include "accel/tracer.h"
 #include "engine/load/load.h"
 #include "engine/load/surface_distance.h"
 #include "engine/measure/tessellate.h"
+#include "engine/plan/coarsen/coarsen.h"
 #include "tests/data.h"
 #include "tests/load/expect_error.h"
 
@@ -160,18 +162,23 @@ TEST(Simplify, KeepsShellsApartThatAreFartherThanTheTolerance) {
   expect_kept(shells, 0.2);  // within the tolerance they may be one
 }
 
-TEST(Simplify, KeepsThinTubesAndSpikes) {
-  Mesh hair;
+/// A tube round x, of three sides.
+Mesh hair(double radius) {
+  Mesh mesh;
   for (std::uint32_t k = 0; k < 200; ++k) {
     for (int side = 0; side < 3; ++side)
-      hair.positions.push_back({0.005 * k, 0.001 * std::cos(2.1 * side), 0.001 * std::sin(2.1 * side)});
+      mesh.positions.push_back({0.005 * k, radius * std::cos(2.1 * side), radius * std::sin(2.1 * side)});
     for (std::uint32_t side = 0; k > 0 && side < 3; ++side) {
       const std::uint32_t a = 3 * k + side, b = 3 * k + (side + 1) % 3;
-      hair.triangles.push_back({a - 3, b - 3, a});
-      hair.triangles.push_back({b - 3, b, a});
+      mesh.triangles.push_back({a - 3, b - 3, a});
+      mesh.triangles.push_back({b - 3, b, a});
     }
   }
-  expect_kept(hair, 0.01, 1000);  // ten times as wide as it is
+  return mesh;
+}
+
+TEST(Simplify, KeepsThinTubesAndSpikes) {
+  expect_kept(hair(0.001), 0.01, 1000);  // ten times as wide as it is
 }
 
 TEST(Simplify, LeavesNoiseBeyondTheTolerance) {
@@ -267,6 +274,69 @@ TEST(Simplify, KeepsItsPromiseOnAModelledMesh) {
   std::vector<std::string> notes;
   const Mesh cow = load_mesh(file, notes);  // 1.9 long, with normals
   EXPECT_LT(expect_kept(cow, 0.08, 100).mesh.triangles.size(), cow.triangles.size() / 2);
+}
+
+/// Whether there is a coarser mesh; expects that it keeps its bound.
+std::optional<CoarserMesh> expect_coarsened(const Mesh& mesh, double tolerance) {
+  const auto result = coarsen(mesh, tolerance);
+  if (!result) return {};
+  EXPECT_LE(result->distance, tolerance);
+  EXPECT_LE(2 * result->mesh.triangles.size(), mesh.triangles.size());
+  EXPECT_EQ(result->mesh.normals.size(), mesh.normals.empty() ? 0 : result->mesh.positions.size());
+  const double slack = 1e-12 * tolerance;
+  EXPECT_LE(farthest(mesh, result->mesh, 300), result->distance + slack);
+  EXPECT_LE(farthest(result->mesh, mesh, 300), result->distance + slack);
+  return result;
+}
+
+TEST(Coarsen, MakesLargerTrianglesOfSmallOnes) {
+  Mesh sphere = subdivided_sphere(6);
+  for (const glm::dvec3& p : sphere.positions) sphere.normals.push_back(glm::vec3(p));
+  const auto result = expect_coarsened(sphere, 0.06);
+  ASSERT_TRUE(result);
+  EXPECT_LT(result->mesh.triangles.size(), sphere.triangles.size() / 5);
+  for (const glm::uvec3& t : result->mesh.triangles) {  // none folded over
+    const Corners c = corners(result->mesh.positions, t);
+    EXPECT_GT(glm::dot(glm::cross(c[1] - c[0], c[2] - c[0]), c[0]), 0);
+  }
+  EXPECT_TRUE(expect_coarsened(flat_sheet(100), 0.05));
+}
+
+TEST(Coarsen, KeepsItsBoundWhateverTheMesh) {
+  Mesh shells = flat_sheet(60), doubled = subdivided_sphere(4), soup;
+  append(shells, flat_sheet(60), {0, 0, 0.03});
+  const std::vector<glm::uvec3> once = doubled.triangles;
+  for (std::size_t i = 0; i < once.size(); i += 2) doubled.triangles.push_back({once[i].x, once[i].z, once[i].y});
+  doubled.triangles.push_back({7, 7, 7});
+  const Mesh sphere = subdivided_sphere(4);
+  for (const glm::uvec3& t : sphere.triangles) {
+    const auto at = static_cast<std::uint32_t>(soup.positions.size());
+    for (int k = 0; k < 3; ++k) soup.positions.push_back(sphere.positions[t[k]]);
+    soup.triangles.push_back({at, at + 1, at + 2});
+  }
+  int coarsened = 0;
+  for (const Mesh& mesh : {shells, doubled, soup, hair(0.001), hair(0.02), noisy_sheet(60, 0.01), noisy_sheet(60, 0.1),
+                           moved(sphere, {1e9, 0, 0})})
+    for (const double tolerance : {0.005, 0.02, 0.05, 0.2, 10.})
+      coarsened += expect_coarsened(mesh, tolerance).has_value();
+  EXPECT_GE(coarsened, 8);
+}
+
+TEST(Coarsen, LeavesWhatHasNothingToDrop) {
+  const Mesh sphere = subdivided_sphere(3);
+  for (const double tolerance : {1e-300, 1e-6, 0.01}) EXPECT_FALSE(coarsen(sphere, tolerance)) << tolerance;
+  EXPECT_FALSE(coarsen(Mesh{}, 1));
+  EXPECT_FALSE(coarsen(moved(sphere, {1e17, 0, 0}), 0.1));
+  for (const double tolerance : {0., -1., std::numeric_limits<double>::quiet_NaN(), infinity})
+    EXPECT_THROW(coarsen(sphere, tolerance), Error);
+}
+
+TEST(Coarsen, IsTheSameEachTime) {
+  const Mesh sphere = subdivided_sphere(6);
+  const auto a = coarsen(sphere, 0.03), b = coarsen(sphere, 0.03);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->mesh.triangles, b->mesh.triangles);
+  EXPECT_EQ(a->mesh.positions, b->mesh.positions);
 }
 
 TEST(SurfaceDistance, IsThatOfTheNearestPoint) {
