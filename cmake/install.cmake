@@ -6,6 +6,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/RayEngine)
 # What a host may include: all that rayengine.h names, comparisons, and the kernels for those who trace by themselves.
 foreach(header accel/box.h accel/geometry.h accel/quadric.h accel/ray.h accel/surface.h accel/tracer.h accel/transform.h
     engine/measure/compare.h engine/plan/device.h engine/plan/model.h engine/plan/plan.h engine/plan/planned.h
+    engine/plan/recognise/recognise.h
     engine/plan/statistics.h engine/plan/verify.h engine/render/render.h engine/scene/image.h engine/scene/scene.h engine/tracers.h)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${header_folder}/${folder})
