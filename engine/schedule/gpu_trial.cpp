@@ -74,8 +74,7 @@ void GpuTrial::by_gpu(double work, double seconds, double possible) {
 void GpuTrial::decide() {
   // What else the machine does only takes away.
   last_ = {std::max(before_.rate(), alone_.rate()), crew_.rate(), gpu_.rate()};
-  // All can gain no more than the GPU does: the rest is what the machine did meanwhile.
-  const bool won = std::min(rate_both(), last_.alone + last_.gpu) >= least_gain * last_.alone;
+  const bool won = rate_both() >= least_gain * last_.alone;
   won_ = won ? won_ + 1 : 0;
   if (won && won_ < trials_to_win && !pays_) return enter(Phase::alone);
   rest_ = won ? trial_ * std::min(latest_proof, next_proof * std::exp2(won_ - trials_to_win))

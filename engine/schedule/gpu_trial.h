@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace rayengine {
 
 /// Finds out whether a GPU pays: the rate of all with it, measured against that of the processor alone before and
@@ -24,8 +26,9 @@ class GpuTrial {
   bool resting() const { return phase_ == Phase::resting; }
 
   // Of the last trial.
-  double rate_alone() const { return last_.alone; }            ///< of the processor without the GPU, work a second
-  double rate_both() const { return last_.crew + last_.gpu; }  ///< of all
+  double rate_alone() const { return last_.alone; }  ///< of the processor without the GPU, work a second
+  /// Of all. They can gain no more than the GPU does: the rest is what the machine did meanwhile.
+  double rate_both() const { return std::min(last_.crew, last_.alone) + last_.gpu; }
   double gain() const { return last_.alone > 0 ? rate_both() / last_.alone : 0; }
   /// Work that the processor could not do for each that the GPU did.
   double walk_share() const;
