@@ -55,7 +55,7 @@ int main() {
     for (const char* name : {"embree", "bvh"})
       for (const std::size_t count : {1, 2, 4, 8, 16, 32, 64}) {
         const auto geometry = scattered(count, triangles);
-        const auto tracer = make_tracer(name, geometry, {Precision::robust, 1});
+        const auto tracer = make_tracer(name, geometry, {.threads = 1});
         Camera camera;
         camera.size = {64, 64};
         const std::vector<Ray> primary = primary_rays(framing_camera(geometry->bounds, camera));
