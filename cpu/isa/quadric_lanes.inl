@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "accel/geometry.h"
-#include "accel/unit_matrices.h"
 #include "accel/isa/lanes.inl"
+#include "accel/unit_matrices.h"
 #include "cpu/quadric_kind.h"
 
 namespace rayengine::ISA {
