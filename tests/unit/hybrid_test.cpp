@@ -302,8 +302,9 @@ TEST(HybridFault, PicturesAreTheSame) {
     return pixels;
   };
   const std::vector<float> right = picture({});
+  // Of the three batches of the trial: whether others follow is the machine's to say.
   for (const Fault& fault : {Fault{Fault::Kind::stall, 2, 1.0}, Fault{Fault::Kind::slow, 2},
-                             Fault{Fault::Kind::error, 3}, Fault{Fault::Kind::lost, 0}})
+                             Fault{Fault::Kind::error, 2}, Fault{Fault::Kind::lost, 0}})
     EXPECT_EQ(picture(fault), right) << static_cast<int>(fault.kind);
 }
 
