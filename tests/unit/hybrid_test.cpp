@@ -274,7 +274,7 @@ TEST(HybridFault, AnErrorOfTheProcessorLeavesThePoolUsable) {
 }
 
 /// The error cancels the other tiles' loops, whose queries are under way.
-TEST(HybridFault, AnErrorOfTheProcessorEndsAPicture) {
+TEST(RenderInvarianceHybrid, AnErrorOfTheProcessorEndsAPicture) {
   Scene scene;
   scene.geometry = balls();
   scene.materials = {{.reflect = 0.4f}};
@@ -286,7 +286,7 @@ TEST(HybridFault, AnErrorOfTheProcessorEndsAPicture) {
   }
 }
 
-TEST(HybridFault, PicturesAreTheSame) {
+TEST(RenderInvarianceHybrid, FaultsOfTheGpuLeavePicturesAsTheyAre) {
   Scene scene;
   scene.geometry = balls();
   scene.materials = {{.color = {1, 0.8f, 0.6f}, .reflect = 0.4f}};
