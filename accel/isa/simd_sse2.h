@@ -1,5 +1,7 @@
 #include <immintrin.h>
 
+#include <cstdint>
+
 // Eight floats, and a register of doubles, as this instruction set has them.
 namespace rayengine::sse2 {
 
@@ -9,6 +11,8 @@ struct lanes {
   __m128 low, high;
 };
 static inline lanes load(const float* p) { return {_mm_load_ps(p), _mm_load_ps(p + 4)}; }
+/// Eight words as they are, which are not numbers.
+static inline lanes load_words(const std::uint32_t* p) { return load(reinterpret_cast<const float*>(p)); }
 static inline void store(float* p, lanes a) { _mm_store_ps(p, a.low), _mm_store_ps(p + 4, a.high); }
 static inline lanes all(float a) { return {_mm_set1_ps(a), _mm_set1_ps(a)}; }
 static inline lanes multiply_subtract(lanes a, lanes b, lanes c) {
@@ -23,5 +27,22 @@ static inline unsigned not_above(lanes a, lanes b) {
 }
 /// A bit for each lane that is true.
 static inline unsigned bits_of(decltype(reals{} < reals{}) mask) { return _mm_movemask_pd((__m128d)mask); }
+/// A bit for each lane whose highest bit is set.
+static inline unsigned sign_bits(lanes a) { return _mm_movemask_ps(a.low) | _mm_movemask_ps(a.high) << 4; }
+static inline void store_eight(std::uint32_t* to, std::uint32_t word) {
+  const __m128i words = _mm_set1_epi32(static_cast<int>(word));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to), words);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to + 4), words);
+}
+/// Stores the lanes whose bits are set side by side, with room for eight whatever their number, which it answers.
+static inline int store_chosen(void* to, lanes a, unsigned chosen) {
+  alignas(16) float words[8];
+  store(words, a);
+  auto* const begin = static_cast<char*>(to);
+  auto* end = begin;
+  for (; chosen; chosen &= chosen - 1, end += sizeof(float))
+    __builtin_memcpy(end, words + __builtin_ctz(chosen), sizeof(float));
+  return static_cast<int>((end - begin) / 4);
+}
 
 }  // namespace rayengine::sse2

@@ -2,5 +2,5 @@
 #include "accel/isa/walk_kernel.h"
 
 namespace rayengine::avx2 {
-#include "accel/isa/walk_lanes.h"
+#include "accel/isa/walk_list.h"
 }  // namespace rayengine::avx2

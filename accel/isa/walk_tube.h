@@ -6,9 +6,6 @@
 // Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets" (2006).
 
 constexpr float tube_margin = 0x1p-19f;
-constexpr int found_nodes = 4;  // room for the leaves that a tube meets
-constexpr int most_leaves = found_nodes * WideNode::width;
-constexpr int most_visits = 48;  // a tube that opens more nodes than this saves nothing
 
 struct Tube {
   lanes near_origin[3], far_origin[3];  ///< the ends of the origins' interval that are nearest to either plane
@@ -95,39 +92,21 @@ static inline unsigned meet(const WideNode& node, const Tube& tube, lanes& enter
   return not_above(enter, leave);
 }
 
-static inline void copy_lane(const WideNode& from, int lane, WideNode& to, int to_lane) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side) to.planes[axis][side][to_lane] = from.planes[axis][side][lane];
-  to.children[to_lane] = from.children[lane];
-}
-
-static inline void clear(WideNode& node) {
-  for (int axis = 0; axis < 3; ++axis) {
-    store(node.planes[axis][0], all(__builtin_inff()));
-    store(node.planes[axis][1], all(-__builtin_inff()));
-  }
-}
-
-/// Collects the leaves that a tube meets in nodes of their own; their number, or -1 when they are too many.
-static inline int find_leaves(const WideNode* nodes, const Tube& tube, WideNode* found) {
-  std::uint32_t waiting[most_visits * WideNode::width + 1];
-  waiting[0] = 0;
-  int end = 1, leaves = 0;
-  for (int visits = 0; end > 0; ++visits) {
-    if (visits == most_visits) return -1;
-    const WideNode& node = nodes[waiting[--end]];
-    lanes enter;
-    for (unsigned met = meet(node, tube, enter); met; met &= met - 1) {
-      const int lane = __builtin_ctz(met);
-      if (!(node.children[lane] & WideNode::leaf)) {
-        waiting[end++] = node.children[lane];
-        continue;
-      }
-      if (leaves == most_leaves) return -1;
-      WideNode& home = found[leaves / WideNode::width];
-      if (leaves % WideNode::width == 0) clear(home);
-      copy_lane(node, lane, home, leaves++ % WideNode::width);
+/// The rays of a tube that meet a box, a bit each, and where.
+static inline unsigned meet_box(const WideNode& node, int lane, const LocalRays& rays, const Tube& tube,
+                                float* entries) {
+  unsigned met = 0;
+  for (int first = 0; first < group; first += 8) {
+    lanes enter = all(0), leave = load(rays.length + first);
+    for (int axis = 0; axis < 3; ++axis) {
+      const lanes near = all(node.planes[axis][tube.near_side[axis]][lane]);
+      const lanes far = all(node.planes[axis][1 - tube.near_side[axis]][lane]);
+      const lanes inverse = load(rays.inverse[axis] + first);
+      enter = larger(multiply_subtract(near, inverse, load(rays.near_origin[axis] + first)), enter);
+      leave = smaller(multiply_subtract(far, inverse, load(rays.far_origin[axis] + first)), leave);
     }
+    store(entries + first, enter);
+    met |= not_above(enter, leave) << first;
   }
-  return leaves;
+  return met;
 }

@@ -127,23 +127,6 @@ INLINE void shorten_hit(const BvhJob& job, PacketState& p, unsigned hit) {
   }
 }
 
-/// The rays that meet a box, a bit each. All run towards the octant of the tube.
-INLINE unsigned meet_box(const WideNode& node, std::uint32_t lane, const LocalRays& rays, const Tube& tube) {
-  unsigned met = 0;
-  for (int first = 0; first < group; first += 8) {
-    lanes enter = ISA::all(0), leave = load(rays.length + first);
-    for (int axis = 0; axis < 3; ++axis) {
-      const lanes near = ISA::all(node.planes[axis][tube.near_side[axis]][lane]);
-      const lanes far = ISA::all(node.planes[axis][1 - tube.near_side[axis]][lane]);
-      const lanes inverse = load(rays.inverse[axis] + first);
-      enter = larger(multiply_subtract(near, inverse, load(rays.near_origin[axis] + first)), enter);
-      leave = smaller(multiply_subtract(far, inverse, load(rays.far_origin[axis] + first)), leave);
-    }
-    met |= not_above(enter, leave) << first;
-  }
-  return met;
-}
-
 INLINE float longest(const LocalRays& rays) { return interval(rays.length).upper; }
 
 INLINE Waiting* push_children(const BvhJob& job, std::uint32_t parent, const Tube& tube, Waiting* top) {
@@ -170,7 +153,8 @@ INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
   for (Waiting* top = push_children(job, 0, tube, stack); top != stack;) {
     const Waiting now = *--top;
     if (entry_of(now.key) > end) continue;
-    const unsigned rays = meet_box(job.nodes[now.parent], now.lane, p.local, tube);
+    alignas(32) float entries[group];
+    const unsigned rays = meet_box(job.nodes[now.parent], static_cast<int>(now.lane), p.local, tube, entries);
     if (!rays) continue;
     const auto child = static_cast<std::uint32_t>(now.key);
     const bool leaf = child & WideNode::leaf;

@@ -83,9 +83,12 @@ INLINE void shorten(const BvhJob& job, LocalRays& local, int k, double t) {
 
 /// Puts a node's children that the ray meets on the stack, the nearest on top.
 INLINE std::uint64_t* push_children(const WideNode& node, const LocalRay& ray, std::uint64_t* top) {
+  lanes enter;
+  unsigned met = meet(node, ray, all(0), enter);
   alignas(32) float entries[WideNode::width];
+  store(entries, enter);
   std::uint64_t* const bottom = top;
-  for (unsigned met = meet(node, ray, all(0), entries); met; met &= met - 1) {
+  for (; met; met &= met - 1) {
     const int lane = __builtin_ctz(met);
     const std::uint64_t key = key_of(entries[lane], node.children[lane]);
     std::uint64_t* at = top++;

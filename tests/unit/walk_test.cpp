@@ -332,6 +332,23 @@ TEST_P(Walk, AnswersRaysAlongAnAxisTogetherAsItAnswersEach) {
   expect_as_each_alone(GetParam(), scene, rays);
 }
 
+TEST_P(Walk, ListsAllThatIsMetByRaysThatMeetVeryMuch) {
+  std::vector<TreeletPrimitive> row;
+  for (std::uint32_t i = 0; i < 1500; ++i) row.push_back({{{i, 0, 0}, {i + 0.5, 1, 1}}, TreeletPrimitive::triangle, i});
+  const Scene scene(std::move(row), 1);
+  std::vector<Ray> apart, together;
+  for (int k = 0; k < 64; ++k) {
+    const double way = k % 2 ? 1 : -1, at = 0.1 + 0.01 * k;
+    apart.push_back({{k % 2 ? -1.0 : 1501.0, at, at}, 0, {way, 1e-6 * k, 0}, k % 3 ? infinity : 20 + k});
+    together.push_back({{-1, at, at}, 0, {1, 1e-6 * k, 0}, k % 3 ? infinity : 20 + k});
+  }
+  for (const auto& rays : {apart, together}) {
+    ASSERT_NO_FATAL_FAILURE(expect_as_each_alone(GetParam(), scene, rays));
+    for (int k = 0; k < 4; ++k)
+      ASSERT_NO_FATAL_FAILURE(expect_right(GetParam(), scene, rays[static_cast<std::size_t>(k)]));
+  }
+}
+
 TEST_P(Walk, OfInvalidRaysIsEmpty) {
   const Scene scene(clutter({}, 1), 8);
   const double nan = std::nan("");
