@@ -38,25 +38,42 @@ static inline void add(Found& found, unsigned rays, const float* entries, std::u
   }
 }
 
-/// False when the tube opens too many nodes.
-static inline bool find_together(const WideNode* nodes, const LocalRays& rays, const Tube& tube, Found& found) {
-  std::uint32_t waiting[(most_tube_visits + 1) * WideNode::width];
-  waiting[0] = 0;
+/// The leaves that a tube meets: lanes of nodes.
+struct TubeLeaves {
+  std::uint32_t nodes[(most_tube_visits + 1) * WideNode::width], lanes[(most_tube_visits + 1) * WideNode::width];
+  int count = 0;
+};
+
+/// False when the tube opens too many nodes. They are visited first come first served, lest each wait for the last.
+static inline bool find_leaves(const WideNode* nodes, const Tube& tube, TubeLeaves& leaves) {
+  alignas(32) static constexpr std::uint32_t every_lane[WideNode::width] = {0, 1, 2, 3, 4, 5, 6, 7};
+  std::uint32_t visited[most_tube_visits + WideNode::width];
+  visited[0] = 0;
   int end = 1;
-  for (int visits = 0; end > 0; ++visits) {
-    if (visits == most_tube_visits) return false;
-    const WideNode& node = nodes[waiting[--end]];
+  for (int at = 0; at != end; ++at) {
+    const WideNode& node = nodes[visited[at]];
     lanes enter;
     const unsigned met = meet(node, tube, enter);
     const lanes children = load_words(node.children);
-    unsigned leaves = met & sign_bits(children);
-    end += store_chosen(waiting + end, children, met ^ leaves);
-    for (; leaves; leaves &= leaves - 1) {
-      const int lane = __builtin_ctz(leaves);
-      alignas(32) float entries[group];
-      const unsigned by = meet_box(node, lane, rays, tube, entries);
-      add(found, by, entries, node.children[lane]);
-    }
+    const unsigned met_leaves = met & sign_bits(children);
+    store_eight(leaves.nodes + leaves.count, visited[at]);
+    leaves.count += store_chosen(leaves.lanes + leaves.count, load_words(every_lane), met_leaves);
+    end += store_chosen(visited + end, children, met ^ met_leaves);
+    if (end > most_tube_visits) return false;
+  }
+  return true;
+}
+
+/// What the rays of a tube meet; false when it opens too many nodes.
+static inline bool find_together(const WideNode* nodes, const LocalRays& rays, const Tube& tube, Found& found) {
+  TubeLeaves leaves;
+  if (!find_leaves(nodes, tube, leaves)) return false;
+  for (int i = 0; i < leaves.count; ++i) {
+    const WideNode& node = nodes[leaves.nodes[i]];
+    const std::uint32_t lane = leaves.lanes[i];
+    alignas(32) float entries[group];
+    const unsigned by = meet_box(node, lane, rays, tube, entries);
+    add(found, by, entries, node.children[lane]);
   }
   return true;
 }

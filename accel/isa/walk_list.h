@@ -75,10 +75,7 @@ static inline void list_found(const Found& found, Listing& to) {
 /// Finds what the chosen rays of a group meet; answers those that are left undone.
 static inline unsigned find(const WideNode* nodes, LocalRays& rays, unsigned chosen, const float* after, Found& found) {
   Tube tube;
-  if (enclose(rays, tube)) {
-    if (find_together(nodes, rays, tube, found)) return 0;
-    for (int& count : found.count) count = 0;
-  }
+  if (enclose(rays, tube) && find_together(nodes, rays, tube, found)) return 0;
   return find_apart(nodes, rays, chosen, after, found);
 }
 

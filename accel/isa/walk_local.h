@@ -59,11 +59,9 @@ static inline void gather(const Ray* rays, std::size_t count, reals* columns) {
   __builtin_memcpy(columns, numbers, sizeof numbers);
 }
 
-/// Clips [enter, leave] to where o + t d lies between two planes. No quotient is NaN: directions are kept from zero.
-static inline void clip(reals lower, reals upper, reals o, reals d, reals& enter, reals& leave) {
-  const reals tiny = reals{} + 0x1p-900;
-  const reals safe = absolute(d) < tiny ? with_sign_of(tiny, d) : d;
-  const reals a = (lower - o) / safe, b = (upper - o) / safe;
+/// Clips [enter, leave] to where o + t / inverse lies between two planes. No product is NaN: inverses are not zero.
+static inline void clip(reals lower, reals upper, reals o, reals inverse, reals& enter, reals& leave) {
+  const reals a = (lower - o) * inverse, b = (upper - o) * inverse;
   enter = greater(lesser(a, b), enter);
   leave = lesser(greater(a, b), leave);
 }
@@ -95,20 +93,23 @@ static inline void to_local(const WalkSpace& space, const Ray* rays, std::size_t
   }
   const reals slack = float_slack + double_slack * largest(o);
   reals enter = tmin * space.scale * stride, leave = tmax * space.scale * stride;
-  for (int axis = 0; axis < 3; ++axis)
-    clip(space.lower[axis] - slack, space.upper[axis] + slack, o[axis], d[axis], enter, leave);
+  reals inverse[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    inverse[axis] = absolute(d[axis]) < 0x1p-900 ? with_sign_of(reals{} + 0x1p900, d[axis]) : 1 / d[axis];
+    clip(space.lower[axis] - slack, space.upper[axis] + slack, o[axis], inverse[axis], enter, leave);
+  }
 
   // From so far that double cannot place the ray in the scene, it meets all of it.
   const integers lost = slack > 1;
   const reals reach = lost ? reals{} + 4 : slack;
   for (int axis = 0; axis < 3; ++axis) {
     const reals at = lost ? reals{} : o[axis] + enter * d[axis];
-    const reals inverse = 1 / (absolute(d[axis]) < least ? with_sign_of(reals{} + least, d[axis]) : d[axis]);
-    const reals away = with_sign_of(reach, inverse);
+    const reals bounded = absolute(d[axis]) < least ? with_sign_of(reals{} + 1 / least, d[axis]) : inverse[axis];
+    const reals away = with_sign_of(reach, bounded);
     store(local.origin[axis] + place, at);
-    store(local.inverse[axis] + place, inverse);
-    store(local.near_origin[axis] + place, (at + away) * inverse);
-    store(local.far_origin[axis] + place, (at - away) * inverse);
+    store(local.inverse[axis] + place, bounded);
+    store(local.near_origin[axis] + place, (at + away) * bounded);
+    store(local.far_origin[axis] + place, (at - away) * bounded);
   }
   store(local.slack + place, reach);
   store(local.length + place, (leave - enter) * (1 + 0x1p-20));

@@ -93,7 +93,7 @@ static inline unsigned meet(const WideNode& node, const Tube& tube, lanes& enter
 }
 
 /// The rays of a tube that meet a box, a bit each, and where.
-static inline unsigned meet_box(const WideNode& node, int lane, const LocalRays& rays, const Tube& tube,
+static inline unsigned meet_box(const WideNode& node, std::uint32_t lane, const LocalRays& rays, const Tube& tube,
                                 float* entries) {
   unsigned met = 0;
   for (int first = 0; first < group; first += 8) {

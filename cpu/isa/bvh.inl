@@ -154,7 +154,7 @@ INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
     const Waiting now = *--top;
     if (entry_of(now.key) > end) continue;
     alignas(32) float entries[group];
-    const unsigned rays = meet_box(job.nodes[now.parent], static_cast<int>(now.lane), p.local, tube, entries);
+    const unsigned rays = meet_box(job.nodes[now.parent], now.lane, p.local, tube, entries);
     if (!rays) continue;
     const auto child = static_cast<std::uint32_t>(now.key);
     const bool leaf = child & WideNode::leaf;
