@@ -156,6 +156,7 @@ std::optional<CanonicalQuadric> canonical(const Quadric& general, const GeneralF
 CanonicalScene in_canonical_forms(const Scene& scene, const Tolerance& tolerance) {
   check(tolerance);
   const Geometry& given = *scene.geometry;
+  if (given.forms.empty()) return {scene, {}};
   std::shared_ptr<Geometry> made;
   std::array<std::size_t, quadric_type_count> counts{};
   std::array<double, quadric_type_count> distances{};

@@ -44,10 +44,11 @@ void normalise(std::vector<glm::dvec3>& points) {
 
 Moments moments(std::span<const glm::dvec3> points) {
   Moments m{};
+  const double share = 1 / static_cast<double>(points.size());
   for (const glm::dvec3& p : points) {
     const Row row{p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x, p.x, p.y, p.z, 1};
     for (std::size_t i = 0; i < terms; ++i)
-      for (std::size_t j = 0; j < terms; ++j) m[i][j] += row[i] * row[j] / static_cast<double>(points.size());
+      for (std::size_t j = 0; j < terms; ++j) m[i][j] += share * row[i] * row[j];
   }
   return m;
 }

@@ -13,9 +13,12 @@ Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   const ModelPlan model = plan_model(given, device, options.tolerance, options.effort);
   Planned result{make_model(canonical.scene, model, options.tools), {}, canonical.choices, 0};
   result.choices.insert(result.choices.end(), model.choices.begin(), model.choices.end());
-  const SceneStatistics made =
-      result.model.replaced.empty() ? given : gather_statistics(result.model.scene, options.rays, options.coherent);
-  result.tracing = plan_tracing(made, device, options.tolerance, options.gpu);
+  const auto trace = [&](const SceneStatistics& made) {
+    return plan_tracing(made, device, options.tolerance, options.gpu);
+  };
+  result.tracing = result.model.replaced.empty()
+                       ? trace(given)
+                       : trace(gather_statistics(result.model.scene, options.rays, options.coherent));
   result.choices.insert(result.choices.end(), result.tracing.choices.begin(), result.tracing.choices.end());
   result.seconds = watch.seconds();
   return result;

@@ -16,18 +16,6 @@ namespace {
 // Patches that are looked at: of a mesh, and of all of them together while each has a few.
 constexpr std::size_t enough_patches = 24, fewest_patches = 4, most_patches = 1024;
 
-/// Of every object.
-std::vector<Box> bounds_of_objects(const Geometry& g) {
-  std::vector<Box> boxes(g.objects.size());
-  auto mesh = g.mesh_bounds.begin();
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (g.objects[i].kind == Object::Kind::mesh) boxes[i] = *mesh++;
-  for (const Instance& i : g.instances) boxes[i.object].add(bounds(g, i));
-  tbb::parallel_for(std::size_t{0}, g.quadrics.size(),
-                    [&](std::size_t i) { boxes[g.quadrics[i].object] = bounds(g, g.quadrics[i]); });
-  return boxes;
-}
-
 /// What is 1 in object space is at least so much in the world; a general form's size is known by its bounds alone.
 double thickness(const Quadric& q, double radius) {
   const glm::dmat3& m = q.to_object.linear;
@@ -35,31 +23,61 @@ double thickness(const Quadric& q, double radius) {
   return q.type == QuadricType::general ? std::min(unit, radius) : unit;
 }
 
+ObjectStatistics at(const Box& box, const glm::dvec3& eye, Object::Kind kind) {
+  ObjectStatistics result{.kind = kind};
+  result.radius = box.finite() ? glm::length(box.size()) / 2 : box.empty() ? 0 : infinity;
+  result.distance = box.empty() ? infinity : std::sqrt(box.squared_distance(eye));
+  return result;
+}
+
+ObjectStatistics look_at(const Geometry& g, const Quadric& q, const glm::dvec3& eye) {
+  ObjectStatistics result = at(bounds(g, q), eye, Object::Kind::quadric);
+  result.type = q.type;
+  result.thickness = thickness(q, result.radius);
+  return result;
+}
+
+ObjectStatistics look_at(const Geometry& g, std::uint32_t mesh, const Box& box, const glm::dvec3& eye,
+                         std::uint32_t patches) {
+  ObjectStatistics result = at(box, eye, Object::Kind::mesh);
+  result.triangles = primitive_count(g, mesh);
+  if (result.triangles < smallest_mesh) return result;
+  const Patches seen = look_at_patches(g, mesh, patches);
+  result.spacing = std::sqrt(2 * seen.area);
+  result.quadric_share = seen.quadric_share;
+  result.ball_share = seen.ball_share;
+  return result;
+}
+
+void look_at_meshes(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
+  std::vector<std::uint32_t> meshes;
+  meshes.reserve(g.mesh_bounds.size());
+  for (std::uint32_t i = 0; meshes.size() < g.mesh_bounds.size(); ++i)
+    if (g.objects[i].kind == Object::Kind::mesh) meshes.push_back(i);
+  const auto patches = static_cast<std::uint32_t>(
+      std::clamp(most_patches / std::max<std::size_t>(meshes.size(), 1), fewest_patches, enough_patches));
+  tbb::parallel_for(std::size_t{0}, meshes.size(),
+                    [&](std::size_t i) { objects[meshes[i]] = look_at(g, meshes[i], g.mesh_bounds[i], eye, patches); });
+}
+
+/// Several instances may be parts of one object.
+void look_at_instances(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
+  if (g.instances.empty()) return;
+  std::vector<Box> boxes(objects.size());
+  for (const Instance& i : g.instances) boxes[i.object].add(bounds(g, i));
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (g.objects[i].kind == Object::Kind::instance) objects[i] = at(boxes[i], eye, Object::Kind::instance);
+}
+
+void look_at_quadrics(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
+  tbb::parallel_for(std::size_t{0}, g.quadrics.size(),
+                    [&](std::size_t i) { objects[g.quadrics[i].object] = look_at(g, g.quadrics[i], eye); });
+}
+
 void count(const Geometry& g, SceneStatistics& result) {
   result.triangles += g.triangles.size();
   result.quadrics += g.quadrics.size();
   add_traits(result.traits, g.quadrics);
-}
-
-ObjectStatistics look_at(const Geometry& g, std::uint32_t object, const Box& box, const glm::dvec3& eye,
-                         std::uint32_t patches) {
-  const Object& o = g.objects[object];
-  ObjectStatistics result{.kind = o.kind};
-  result.radius = box.finite() ? glm::length(box.size()) / 2 : box.empty() ? 0 : infinity;
-  result.distance = box.empty() ? infinity : std::sqrt(box.squared_distance(eye));
-  if (o.kind == Object::Kind::quadric) {
-    result.type = g.quadrics[o.first].type;
-    result.thickness = thickness(g.quadrics[o.first], result.radius);
-  }
-  if (o.kind == Object::Kind::mesh) {
-    result.triangles = primitive_count(g, object);
-    if (result.triangles < smallest_mesh) return result;
-    const Patches seen = look_at_patches(g, object, patches);
-    result.spacing = std::sqrt(2 * seen.area);
-    result.quadric_share = seen.quadric_share;
-    result.ball_share = seen.ball_share;
-  }
-  return result;
 }
 
 }  // namespace
@@ -74,12 +92,9 @@ SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent
   const Camera& camera = scene.camera;
   SceneStatistics result;
   result.objects.resize(g.objects.size());
-  const std::vector<Box> boxes = bounds_of_objects(g);
-  const auto meshes = std::max<std::size_t>(g.mesh_bounds.size(), 1);
-  const auto patches = static_cast<std::uint32_t>(std::clamp(most_patches / meshes, fewest_patches, enough_patches));
-  tbb::parallel_for(std::size_t{0}, g.objects.size(), [&](std::size_t i) {
-    result.objects[i] = look_at(g, static_cast<std::uint32_t>(i), boxes[i], camera.from, patches);
-  });
+  look_at_meshes(g, camera.from, result.objects);
+  look_at_instances(g, camera.from, result.objects);
+  look_at_quadrics(g, camera.from, result.objects);
   count(g, result);
   for (const auto& group : g.groups) count(*group, result);
   result.instances = g.instances.size();
