@@ -27,13 +27,24 @@ EGLConfig any_config(EGLDisplay display) {
   return config;
 }
 
-EGLContext create_context(EGLDisplay display, bool robust) {
-  const EGLint attributes[] = {
-      EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG, debug,
-      // The last pair makes a lost device known instead of undefined; drivers may refuse it.
-      robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
+EGLContext create_context(EGLDisplay display, EGLint profile_bit, bool robust) {
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                               EGL_CONTEXT_OPENGL_PROFILE_MASK, profile_bit, EGL_CONTEXT_OPENGL_DEBUG, debug,
+                               // The last pair makes a lost device known instead of undefined; drivers may refuse it.
+                               robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                               EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
   return eglCreateContext(display, any_config(display), EGL_NO_CONTEXT, attributes);
+}
+
+/// The first that the driver agrees to.
+EGLContext create_context(EGLDisplay display, Profile profile) {
+  EGLContext context = EGL_NO_CONTEXT;
+  for (const EGLint bit : {EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT}) {
+    if (bit == EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT && profile == Profile::core) continue;
+    for (const bool robust : {true, false})
+      if (context == EGL_NO_CONTEXT) context = create_context(display, bit, robust);
+  }
+  return context;
 }
 
 std::string text(GLenum name) {
@@ -92,13 +103,12 @@ struct Context::Egl {
   }
 
   /// Returns what went wrong, or nothing.
-  std::string open(const EglCandidate& candidate) {
+  std::string open(const EglCandidate& candidate, Profile profile) {
     display = eglGetPlatformDisplayEXT(candidate.platform, candidate.native, nullptr);
     if (display == EGL_NO_DISPLAY) return "no display, " + egl_error();
     if (!eglInitialize(display, nullptr, nullptr)) return "cannot be initialised, " + egl_error();
     if (!eglBindAPI(EGL_OPENGL_API)) return "has no OpenGL, " + egl_error();
-    context = create_context(display, true);
-    if (context == EGL_NO_CONTEXT) context = create_context(display, false);
+    context = create_context(display, profile);
     if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core context, " + egl_error();
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
       return "no context without a surface, " + egl_error();
@@ -107,11 +117,11 @@ struct Context::Egl {
   }
 };
 
-Context::Context(int device) {
+Context::Context(int device, Profile profile) {
   std::string tried;
   for (const EglCandidate& candidate : egl_candidates(device)) {
     egl_ = std::make_unique<Egl>();
-    const std::string failure = egl_->open(candidate);
+    const std::string failure = egl_->open(candidate, profile);
     if (failure.empty()) {
       info_ = describe(candidate);
       break;

@@ -17,13 +17,21 @@ struct GpuInfo {
   int invocations = 0;    ///< largest compute work group
 };
 
-/// An OpenGL 4.5 core context without a window, through EGL: on a device of EGL_EXT_device_enumeration, hardware before
+/// What a context knows beside what OpenGL 4.5 has kept. All here is written for the core.
+enum class Profile {
+  core,
+  /// Older parts as well, where the device has them: points are not sprites there, unless they are asked to be. In the
+  /// core all are, with coordinates within the point, for which llvmpipe sets up each like two triangles.
+  compatibility,
+};
+
+/// An OpenGL 4.5 context without a window, through EGL: on a device of EGL_EXT_device_enumeration, hardware before
 /// software, else surfaceless. It is current on the thread that made it, which is the only one that may use or destroy
 /// it.
 class Context {
  public:
   /// `device` as listed by gpu_devices(); any when negative. Throws Error that says all that was tried.
-  explicit Context(int device = -1);
+  explicit Context(int device = -1, Profile profile = Profile::core);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

@@ -45,7 +45,7 @@ void set(GLint location, const glm::vec3& v) { glUniform3f(location, v.x, v.y, v
 CastScene::CastScene(std::shared_ptr<const Geometry> geometry, std::span<const CastLight> lights,
                      std::span<const CastMaterial> materials, const glm::vec3& background, const PointsOptions& options)
     : options_(options),
-      context_(options.device),
+      context_(options.device, Profile::compatibility),
       scene_(flatten(geometry)),
       gridded_(scene_, build_grid(*checked(scene_.geometry, options)), context_.info()),
       box_(geometry->bounds, gridded_.frame),

@@ -16,6 +16,16 @@ TEST(Context, IsOpenGl45) {
   EXPECT_GE(context.info().texture_size, 16384);
 }
 
+TEST(Context, LeavesPointsWhatTheyAreWhereItMay) {
+  Context context(-1, Profile::compatibility);
+  EXPECT_GE(epoxy_gl_version(), 45);
+  GLint profile = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  if (profile & GL_CONTEXT_CORE_PROFILE_BIT) GTEST_SKIP() << "this driver has the core profile alone";
+  EXPECT_FALSE(glIsEnabled(GL_POINT_SPRITE));
+  EXPECT_NO_THROW(context.check_errors("a test"));
+}
+
 TEST(Context, RefusesADeviceThatIsNotThereAndSaysHowManyThereAre) {
   try {
     Context context(99);
