@@ -84,7 +84,7 @@ class Experiment {
   void measure_resolution(PurcellFigures& figures, unsigned resolution) {
     const auto grid = caster({.device = options_.gpu,
                               .grid = {.density = density(resolution)},
-                              .policy = {.rule = GridPolicy::Rule::most, .steps = 1}});
+                              .policy = GridPolicy{.rule = GridPolicy::Rule::most, .steps = 1}});
     const GridWork work = measure(*grid);
     for (std::size_t i = 0; i < grid_state_count; ++i)
       figures.rows.push_back({longest(grid->resolution()), state_names[i], work.passes[i],
@@ -104,7 +104,7 @@ class Experiment {
   }
 
   void measure_single_pass(PurcellFigures& figures) {
-    const auto grid = caster({.device = options_.gpu, .single_pass = true});
+    const auto grid = caster({.device = options_.gpu, .policy = GridPolicy{.few = 1}});
     grid->measure(view_);
     figures.policies.push_back({"all in one shader", GridPolicy{}.steps, 1, 1e3 * fastest(*grid)});
   }

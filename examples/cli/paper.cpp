@@ -37,6 +37,12 @@ void prepare_folder(const PaperOptions& options, std::initializer_list<const cha
   for (const char* name : files) check_output(options.output / name);
 }
 
+std::string_view against(double ours, double theirs) {
+  return ours > 1.25 * theirs  ? "more than in the paper"
+         : ours < 0.8 * theirs ? "less than in the paper"
+                               : "as in the paper";
+}
+
 void add_paper(CLI::App& app, Action& action) {
   auto options = std::make_shared<PaperOptions>();
   CLI::App* sub = add_subcommand(

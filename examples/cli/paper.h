@@ -24,6 +24,9 @@ int run_ralovich(const PaperOptions& options);
 int run_szecsi(const PaperOptions& options);
 int run_wood(const PaperOptions& options);
 
+/// How a share or a gain of ours compares with the paper's, in words.
+std::string_view against(double ours, double theirs);
+
 /// The scenes that were named, each with its file's name.
 std::vector<std::pair<std::string, Scene>> load_scenes(const PaperOptions& options);
 

@@ -86,13 +86,6 @@ std::string table(const std::vector<SzecsiRow>& rows) {
   return text;
 }
 
-/// How our gain compares with the paper's.
-std::string_view against(double ours, double theirs) {
-  return ours > 1.25 * theirs  ? "more than in the paper"
-         : ours < 0.8 * theirs ? "less than in the paper"
-                               : "as in the paper";
-}
-
 std::string page(const SzecsiResult& result, const std::string& processor, bool chart) {
   constexpr double paper_100 = 2, paper_5000 = 3 / 0.23;
   const double gain_10 = ratio(result.rows, 10, 256), gain_100 = ratio(result.rows, 100, 256),

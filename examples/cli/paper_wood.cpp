@@ -44,12 +44,9 @@ std::string quadrics_table(const WoodFigures& figures) {
   return text;
 }
 
-std::string_view verdict(double ratio) {
-  constexpr double theirs = paper_gpu / paper_software;
-  return ratio > 1.25 * theirs   ? "The GPU gains more than in the paper."
-         : ratio >= 0.8 * theirs ? "The GPU gains as in the paper."
-         : ratio > 1             ? "The GPU gains less than in the paper."
-                                 : "The GPU does not gain: here the trend is another than in the paper.";
+std::string verdict(double ratio) {
+  if (ratio <= 1) return "The GPU does not gain: here the trend is another than in the paper.";
+  return fmt::format("The GPU gains {}.", against(ratio, paper_gpu / paper_software));
 }
 
 std::string page(const WoodFigures& figures, const glm::ivec2& size, bool chart) {

@@ -62,11 +62,7 @@ class GridCaster::Device {
     shading_.bind();
     gathered_.bind(gathered_unit);
     weights_.bind(weights_unit);
-    GridWork work;
-    if (options_.tracer.single_pass)
-      kernels_.run_single(*batch_, textures_, options_.tracer.policy);
-    else
-      work = kernels_.run(*batch_, textures_, options_.tracer.policy, timed);
+    GridWork work = kernels_.run(*batch_, textures_, options_.tracer.policy.value_or(GridPolicy{}), timed);
     await(Fence(), context_);
     return work;
   }

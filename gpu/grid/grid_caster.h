@@ -13,7 +13,7 @@
 namespace rayengine {
 
 struct GridCastOptions {
-  GridTracerOptions tracer;  ///< but for `batch_side`: a picture is one batch
+  GridTracerOptions tracer;  ///< but for `batch_side`, as a picture is one batch; without a policy passes by turns
   bool shadows = true;       ///< rays to the first light
   int reflections = 0;       ///< how many may follow each other
 };

@@ -55,10 +55,8 @@ void GridEngine::upload(std::span<const Traveller> travellers) {
 
 void GridEngine::answer(std::span<Traveller> travellers, StreamQuery query) {
   upload(travellers);
-  if (options_.single_pass)
-    kernels(query).run_single(*batch_, *textures_, options_.policy);
-  else
-    kernels(query).run(*batch_, *textures_, options_.policy);
+  const GridPolicy usual{.few = context_.info().software ? 1 : 0.5};
+  kernels(query).run(*batch_, *textures_, options_.policy.value_or(usual));
   batch_->read_back();
   batch_->await(context_);
   for (std::size_t i = 0; i < travellers.size(); ++i) {

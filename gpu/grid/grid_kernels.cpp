@@ -164,19 +164,21 @@ std::size_t GridKernels::run_kernel(GridState state, const GridTextures& grid, c
 }
 
 GridWork GridKernels::run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed) {
+  const bool none = policy.rule == GridPolicy::Rule::turns && policy.few >= 1;
+  GridWork work;
   begin(batch, grid);
-  update_states();
-  const auto few = static_cast<std::size_t>(policy.few * static_cast<double>(batch.capacity()));
-  const bool turns = policy.rule == GridPolicy::Rule::turns;
-  const GridWork work = turns ? run_by_turns(grid, policy, few, timed) : run_by_counts(grid, policy, timed);
+  if (none)
+    draw_single(grid, policy);
+  else
+    work = run_passes(grid, policy, batch.capacity(), timed);
   end();
   return work;
 }
 
-void GridKernels::run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy) {
-  begin(batch, grid);
-  draw_single(grid, policy);
-  end();
+GridWork GridKernels::run_passes(const GridTextures& grid, const GridPolicy& policy, std::size_t capacity, bool timed) {
+  update_states();
+  if (policy.rule != GridPolicy::Rule::turns) return run_by_counts(grid, policy, timed);
+  return run_by_turns(grid, policy, static_cast<std::size_t>(policy.few * static_cast<double>(capacity)), timed);
 }
 
 /// A pass in which all rays go all their ways, from wherever they are.

@@ -49,10 +49,9 @@ class GridKernels {
   GridKernels(const std::vector<KernelType>& types, StreamQuery query, std::vector<std::string> defines,
               Shading shading = {});
 
-  /// Runs passes until no ray waits. `timed` waits for the device after each.
+  /// Runs passes until no ray waits, or a loop over all of a ray's way, as `policy` has it. `timed` waits for the
+  /// device after each pass.
   GridWork run(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy, bool timed = false);
-  /// The same in one pass, with a loop over all of a ray's way.
-  void run_single(const StreamBatch& batch, const GridTextures& grid, const GridPolicy& policy);
 
  private:
   bool shaded() const { return !shading_.sources.empty(); }
@@ -66,6 +65,7 @@ class GridKernels {
   std::size_t states() const { return shaded() ? 3 : 2; }
   std::size_t run_kernel(GridState state, const GridTextures& grid, const GridPolicy& policy, bool timed,
                          GridWork& work) const;
+  GridWork run_passes(const GridTextures& grid, const GridPolicy& policy, std::size_t capacity, bool timed);
   GridWork run_by_turns(const GridTextures& grid, const GridPolicy& policy, std::size_t few, bool timed);
   void draw_single(const GridTextures& grid, const GridPolicy& policy);
   GridWork run_by_counts(const GridTextures& grid, const GridPolicy& policy, bool timed) const;

@@ -25,7 +25,7 @@ struct GridPolicy {
   Rule rule = Rule::turns;
   double share = 0.5;          ///< of the rays under way; 0: as soon as any wait, 1: when all do
   std::uint32_t steps = 1024;  ///< voxels that a ray crosses in one traverse pass, at most
-  double few = 0;              ///< share of a batch that a loop in one shader ends sooner than passes do; of turns
+  double few = 0;  ///< share of a batch that a loop in one shader ends sooner than passes do; of turns. 1: no passes
 };
 
 /// Nothing when no ray waits for anything. Not for turns.

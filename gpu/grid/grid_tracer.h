@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace rayengine {
 struct GridTracerOptions {
   int device = -1;  ///< an EGL device by its number; the best when negative
   GridOptions grid;
-  GridPolicy policy{.few = 0.5};
-  bool single_pass = false;          ///< one shader with a loop over a ray's whole way, instead of states and passes
+  /// None for what suits the device: hardware ends the last half of a batch in a loop; to a renderer in software, which
+  /// pays for each pass, all of it is left.
+  std::optional<GridPolicy> policy;
   int batch_side = 0;                ///< a batch holds side x side rays; 0 for what suits the device
   std::vector<std::string> defines;  ///< added to the kernels: how tests break one to see that it is noticed
 };

@@ -10,6 +10,7 @@
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
 #include "engine/tracers.h"
+#include "gpu/grid/grid_tracer.h"
 #include "tests/equivalence/cases.h"
 
 namespace rayengine {
@@ -17,15 +18,16 @@ namespace {
 
 using test::Case;
 
-/// A tracer's name, and a scene.
+/// A tracer's name, or how it goes about it where software does not by itself, and a scene.
 class Equivalence : public testing::TestWithParam<std::tuple<const char*, Case>> {
  protected:
   const Case& scene() const { return std::get<Case>(GetParam()); }
   const Geometry& geometry() const { return *scene().geometry; }
 
   std::unique_ptr<Tracer> tracer(Precision precision) const {
-    return make_tracer(std::get<const char*>(GetParam()), std::get<Case>(GetParam()).geometry,
-                       {.precision = precision});
+    const std::string name = std::get<const char*>(GetParam());
+    if (name == "grid_in_passes") return make_grid_tracer(scene().geometry, precision, {.policy = GridPolicy{}});
+    return make_tracer(name, scene().geometry, {.precision = precision});
   }
 
   std::unique_ptr<Tracer> oracle() const { return make_reference_tracer(scene().geometry); }
@@ -43,7 +45,7 @@ std::string name_of(const testing::TestParamInfo<Equivalence::ParamType>& info) 
 }
 INSTANTIATE_TEST_SUITE_P(Tracers, Equivalence,
                          testing::Combine(testing::Values("embree", "bvh", "stream", "objects", "cones", "grid",
-                                                          "points"),
+                                                          "grid_in_passes", "points"),
                                           testing::ValuesIn(test::all_cases())),
                          name_of);
 

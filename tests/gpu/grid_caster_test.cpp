@@ -88,7 +88,7 @@ void expect_picture(const GridCastOptions& options) {
 TEST(GridCaster, CastsEyeRays) { expect_picture({.shadows = false}); }
 TEST(GridCaster, AsksAfterTheFirstLight) { expect_picture({}); }
 TEST(GridCaster, SendsOneRayOnFromMirrors) { expect_picture({.reflections = 2}); }
-TEST(GridCaster, DoesItInOnePass) { expect_picture({.tracer = {.single_pass = true}, .reflections = 2}); }
+TEST(GridCaster, DoesItInOnePass) { expect_picture({.tracer = {.policy = GridPolicy{.few = 1}}, .reflections = 2}); }
 
 TEST(GridCaster, SeesTheSameFromAfar) {
   Scene scene = balls();

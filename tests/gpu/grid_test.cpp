@@ -44,7 +44,7 @@ std::vector<Ray> rays_through(const Geometry& geometry) {
 void expect_the_same(const GridTracerOptions& options) {
   const auto geometry = mixed();
   const auto rays = rays_through(*geometry);
-  const auto usual = make_grid_tracer(geometry, Precision::robust);
+  const auto usual = make_grid_tracer(geometry, Precision::robust, {.policy = GridPolicy{}});
   const auto other = make_grid_tracer(geometry, Precision::robust, options);
   const Answers a = ask(*usual, rays), b = ask(*other, rays);
   std::size_t hits = 0;
@@ -59,17 +59,18 @@ void expect_the_same(const GridTracerOptions& options) {
   EXPECT_GT(hits, rays.size() / 3);
 }
 
-TEST(Grid, OnePassGivesTheAnswersOfMany) { expect_the_same({.single_pass = true}); }
+TEST(Grid, OnePassGivesTheAnswersOfMany) { expect_the_same({.policy = GridPolicy{.few = 1}}); }
 
 TEST(Grid, PoliciesGiveTheSameAnswers) {
-  expect_the_same({.policy = {.rule = GridPolicy::Rule::share, .share = 0, .steps = 1}});
-  expect_the_same({.policy = {.rule = GridPolicy::Rule::share, .share = 1, .steps = 3}});
-  expect_the_same({.policy = {.rule = GridPolicy::Rule::most, .steps = 2}});
+  expect_the_same({.policy = GridPolicy{.rule = GridPolicy::Rule::share, .share = 0, .steps = 1}});
+  expect_the_same({.policy = GridPolicy{.rule = GridPolicy::Rule::share, .share = 1, .steps = 3}});
+  expect_the_same({.policy = GridPolicy{.rule = GridPolicy::Rule::most, .steps = 2}});
 }
 
 TEST(Grid, PassesAloneGiveTheAnswersOfPassesAndALoop) {
-  expect_the_same({.policy = {.few = 0}});
-  expect_the_same({.policy = {.steps = 2, .few = 0.2}, .batch_side = 64});
+  expect_the_same({});
+  expect_the_same({.policy = GridPolicy{.few = 0.5}});
+  expect_the_same({.policy = GridPolicy{.steps = 2, .few = 0.2}, .batch_side = 64});
 }
 
 TEST(Grid, ResolutionsAndBatchesGiveTheSameAnswers) {
