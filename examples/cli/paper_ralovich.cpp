@@ -115,8 +115,8 @@ std::string stages_table(const Results& r) {
   for (const auto& [triangles, vertex] : theirs)
     for (const StageShares& s : r.stages)
       if (s.triangles == triangles && s.mode == CastMode::RC)
-        text += fmt::format("In RC intersecting takes {} of {}: {:.0f} % where it took {}.\n",
-                            against(s.vertex, vertex), s.scene, s.vertex, vertex);
+        text += fmt::format("In RC intersections take {:.0f} % of the work in {}, {}, where they took {} %.\n",
+                            s.vertex, s.scene, against(s.vertex, vertex), vertex);
   return text;
 }
 

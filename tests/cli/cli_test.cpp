@@ -565,6 +565,27 @@ TEST_F(Cli, PaperWoodWritesBothMethodsAndSixQuadrics) {
 
 TEST_F(Cli, PaperWoodHasItsOwnScene) { expect_failure(2, "paper wood scene.nff -o x", "its own scenes"); }
 
+TEST_F(Cli, PaperRalovichWritesEveryMethodInEveryMode) {
+  const test::Outcome outcome = run("paper ralovich --size 16x16 -o ralovich");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::istringstream csv(test::content(file("ralovich/ralovich.csv")));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "scene,triangles,mode,method,milliseconds");
+  std::map<std::string, int> rows;  // by triangles, mode and method
+  while (std::getline(csv, line)) {
+    const auto from = line.find(',') + 1, to = line.rfind(',');
+    ++rows[line.substr(from, to - from)];
+    EXPECT_GT(std::stod(line.substr(to + 1)), 0) << line;
+  }
+  EXPECT_EQ(rows.size(), 4u * 3 * 3);
+  for (const char* row : {"12,RC,points", "36,SC,points_without_gs", "646,RT,fragment", "1024,RT,points"})
+    EXPECT_EQ(rows[row], 1) << row;
+  const std::string page = test::content(file("ralovich/ralovich.md"));
+  for (const char* said : {"of the work in room, ", "With a geometry shader rays take", "It guessed that", "at most"})
+    EXPECT_NE(page.find(said), page.npos) << said;
+}
+
 TEST_F(Cli, PaperRalovichTakesMeshesAlone) {
   const test::Outcome outcome = run("paper ralovich scene.nff -o ralovich");
   EXPECT_EQ(outcome.code, 1);
