@@ -12,7 +12,7 @@ namespace {
 
 constexpr int parts = group / reals_count;
 constexpr unsigned part_bits = (1u << reals_count) - 1;
-constexpr int few = 1;  // rays that are quicker alone
+constexpr int few = 4;  // rays that are quicker alone
 
 struct PacketState {
   LocalRays local;

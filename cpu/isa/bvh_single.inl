@@ -117,16 +117,39 @@ INLINE void descend(const BvhJob& job, LocalRays& local, int k, std::uint32_t ch
   }
 }
 
+/// The same in any order, for who wants any leaf: nothing is sorted, and nothing waits for what was met last.
+template <class AtLeaf>
+INLINE void descend_anyhow(const BvhJob& job, const LocalRays& local, int k, std::uint32_t child, AtLeaf&& at_leaf) {
+  std::uint32_t stack[most_waiting + WideNode::width];  // store_chosen writes eight
+  stack[0] = child;
+  const LocalRay ray(local, k);
+  for (std::uint32_t* top = stack + 1; top != stack;) {
+    const std::uint32_t next = *--top;
+    if (next & WideNode::leaf) {
+      if (at_leaf(job.leaves[next ^ WideNode::leaf])) return;
+      continue;
+    }
+    const WideNode& node = job.nodes[next];
+    lanes enter;
+    const unsigned met = meet(node, ray, all(0), enter);
+    top += store_chosen(top, load_words(node.children), met);
+  }
+}
+
 /// Whether the ray was hit nearer than before.
 template <Ask ask>
 bool trace_alone(const BvhJob& job, LocalRays& local, int k, std::uint32_t child, State<double>& s) {
   bool hit = false;
-  descend(job, local, k, child, [&](const BvhLeaf& leaf) {
+  const auto test = [&](const BvhLeaf& leaf) {
     if (!test_leaf_alone<ask>(job, leaf, s)) return false;
     hit = true;
     if (!ask.any) shorten(job, local, k, s.rays.nearest);
     return ask.any;
-  });
+  };
+  if constexpr (ask.any)
+    descend_anyhow(job, local, k, child, test);
+  else
+    descend(job, local, k, child, test);
   return hit;
 }
 
