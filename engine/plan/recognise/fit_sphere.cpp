@@ -11,13 +11,13 @@ namespace rayengine::surfaces {
 // Coope, "Circle fitting by linear and nonlinear least squares" (1993), in three dimensions.
 std::optional<Candidate> fit_sphere(const Region& region) {
   const Sample sample(region);
-  const auto& [few, patch, points] = sample;
+  const Cloud& points = sample.cloud;
   if (!points.usable()) return {};
-  const double count = 3. * static_cast<double>(few.size());
+  const double count = 3. * static_cast<double>(sample.triangles.size());
   Matrix<3> m{};
   Vector<3> b{};
   double squares = 0;
-  each_corner(patch, [&](const glm::dvec3& at) {
+  each_corner(sample.patch, [&](const glm::dvec3& at) {
     const glm::dvec3 p = points.local(at);
     const double size = glm::dot(p, p);
     squares += size;
@@ -29,7 +29,7 @@ std::optional<Candidate> fit_sphere(const Region& region) {
   const glm::dvec3 center((*c)[0], (*c)[1], (*c)[2]);
   const double radius = std::sqrt(squares / count + glm::dot(center, center));
   double noise = std::numeric_limits<double>::epsilon();
-  each_corner(patch, [&](const glm::dvec3& at) {
+  each_corner(sample.patch, [&](const glm::dvec3& at) {
     noise = std::max(noise, std::abs(glm::length(points.local(at) - center) - radius));
   });
   Candidate found;
