@@ -53,7 +53,8 @@ Scene balls() {
   return scene;
 }
 
-/// A processor so slow that the GPU pays, and the stream tracer on whatever GPU there is.
+/// A processor so slow that the GPU pays, even one in software under a sanitizer, and the stream tracer on whatever GPU
+/// there is.
 class LostContext : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
@@ -67,7 +68,7 @@ class LostContext : public testing::TestWithParam<Case> {
     wait.emplace(glClientWaitSync, loss == Loss::wait_fails   ? failing_wait
                                    : loss == Loss::taken_away ? wait_without_context
                                                               : true_wait);
-    hybrid = make_hybrid_tracer(std::make_unique<PacedTracer>(scene.geometry, 0, 1e-5, true),
+    hybrid = make_hybrid_tracer(std::make_unique<PacedTracer>(scene.geometry, 0, 3e-5, true),
                                 [this] { return make_stream_tracer(scene.geometry, Precision::robust); },
                                 {.threads = 2, .say = [this](const std::string& text) {
                                    const std::lock_guard lock(mutex);
@@ -95,17 +96,18 @@ class LostContext : public testing::TestWithParam<Case> {
   }
 
   const Scene scene = balls();
-  const std::vector<Ray> rays = random_rays(scene.geometry->bounds, 40'000, 5);
+  const std::vector<Ray> rays = random_rays(scene.geometry->bounds, 20'000, 5);
   std::optional<Instead<decltype(glGetGraphicsResetStatus)>> status;
   std::optional<Instead<decltype(glClientWaitSync)>> wait;
   std::mutex mutex;
   std::vector<std::string> said;
   std::unique_ptr<Hybrid> hybrid;  // first to go
 };
+// With the first batch or the second: whether more are sent is for the trial to say.
 INSTANTIATE_TEST_SUITE_P(Faults, LostContext,
-                         testing::Values(Case{Loss::reset, never}, Case{Loss::reset, 0}, Case{Loss::reset, 7},
-                                         Case{Loss::wait_fails, 0}, Case{Loss::wait_fails, 7},
-                                         Case{Loss::taken_away, 0}, Case{Loss::taken_away, 7}));
+                         testing::Values(Case{Loss::reset, never}, Case{Loss::reset, 0}, Case{Loss::reset, 1},
+                                         Case{Loss::wait_fails, 0}, Case{Loss::wait_fails, 3},
+                                         Case{Loss::taken_away, 0}, Case{Loss::taken_away, 3}));
 
 TEST_P(LostContext, EveryRayIsAnsweredOnce) {
   std::vector<Hit> right(rays.size());
