@@ -1,7 +1,9 @@
 #include "cpu/embree_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "accel/rounding.h"
 
@@ -24,15 +26,21 @@ void clip(double lo, double hi, double o, double d, double& enter, double& leave
   leave = std::min(leave, std::max(a, b));
 }
 
+bool has_quadrics(const Geometry& geometry) {
+  return !geometry.quadrics.empty() ||
+         std::ranges::any_of(geometry.groups, [](const auto& group) { return has_quadrics(*group); });
+}
+
 }  // namespace
 
 RayLoader::RayLoader(const EmbreeScene& scene, Precision precision)
     : scene_(scene),
-      load_packet_(packet_loader(best_isa())),
+      code_(packet_code(best_isa())),
       ordinary_{EmbreeScene::range, shortest, longest},
       box_(scene.finite_bounds()),
       moves_(precision != Precision::fast && !box_.empty()),
-      unbounded_(!scene.geometry().bounds.finite()) {
+      unbounded_(!scene.geometry().bounds.finite()),
+      has_quadrics_(rayengine::has_quadrics(scene.geometry())) {
   if (box_.empty()) return;
   if (moves_) ordinary_.farthest = box_.extent() * EmbreeScene::near_extents;
   const double slack = box_.extent() * 0x1p-20;  // room for the rounding of the entry point itself
@@ -62,8 +70,14 @@ RayLoader::Placed RayLoader::place(const Ray& ray) const {
   return placed;
 }
 
-void RayLoader::load_lane(const Ray& ray, const Placed& placed, int lanes, int lane, QuadricContext& c,
-                          float* soa) const {
+bool RayLoader::load_lane(const Ray& ray, int lanes, int lane, QuadricContext& c, float* numbers,
+                          std::uint32_t& status) const {
+  Placed placed;
+  if (!is_ordinary(ray)) {
+    if (!is_valid(ray)) return status = status_invalid, false;
+    placed = place(ray);
+    if (!placed.traced) return false;
+  }
   c.ox[lane] = ray.origin.x, c.oy[lane] = ray.origin.y, c.oz[lane] = ray.origin.z;
   c.dx[lane] = ray.direction.x, c.dy[lane] = ray.direction.y, c.dz[lane] = ray.direction.z;
   c.tmin[lane] = ray.tmin;
@@ -73,65 +87,85 @@ void RayLoader::load_lane(const Ray& ray, const Placed& placed, int lanes, int l
   c.rate[lane] = placed.rate;
   c.scale[lane] = placed.scale;
   const glm::dvec3 origin = placed.shift == 0 ? ray.origin : ray.at(placed.shift);
-  float* const field = soa + lane;
+  float* const field = numbers + lane;
   for (int i = 0; i < 3; ++i) {
-    field[i * lanes] = static_cast<float>(origin[i]);
-    field[(4 + i) * lanes] = static_cast<float>(ray.direction[i] * placed.scale);
+    field[(org_x_row + i) * lanes] = static_cast<float>(origin[i]);
+    field[(dir_x_row + i) * lanes] = static_cast<float>(ray.direction[i] * placed.scale);
   }
-  field[3 * lanes] = std::max(0.f, float_below((ray.tmin - placed.shift) * placed.rate));
-  field[8 * lanes] = float_above((ray.tmax - placed.shift) * placed.rate);
+  field[tnear_row * lanes] = std::max(0.f, float_below((ray.tmin - placed.shift) * placed.rate));
+  field[tfar_row * lanes] = float_above((ray.tmax - placed.shift) * placed.rate);
+  return true;
 }
 
-template <class EmbreeRays>
-void RayLoader::begin(int lanes, bool coherent, Packet<EmbreeRays>& packet) const {
-  rtcInitIntersectContext(&packet.context.embree);
+void RayLoader::begin(bool coherent, int lanes, QuadricContext& context, float* numbers) const {
+  rtcInitIntersectContext(&context.embree);
   // Embree 3.13 can hang in its coherent occlusion test when the scene holds instances.
-  if (coherent && scene_.instances().empty()) packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  packet.context.instances = &scene_.instances();
-  float* const soa = reinterpret_cast<float*>(&packet.rays);
-  std::fill_n(soa + 7 * lanes, lanes, 0.f);                                   // time
-  std::fill_n(reinterpret_cast<unsigned*>(soa + 9 * lanes), lanes, ~0u);      // mask
-  std::fill_n(reinterpret_cast<unsigned*>(soa + 10 * lanes), 2 * lanes, 0u);  // id, flags
+  if (coherent && scene_.instances().empty()) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.instances = &scene_.instances();
+  std::fill_n(numbers + time_row * lanes, lanes, 0.f);
+  std::fill_n(numbers + mask_row * lanes, lanes, std::bit_cast<float>(~0u));
+  std::fill_n(numbers + id_row * lanes, 2 * lanes, 0.f);  // and flags
 }
 
-template <class EmbreeRays>
-bool RayLoader::load(std::span<const Ray> rays, int lanes, Packet<EmbreeRays>& packet) const {
-  float* const soa = reinterpret_cast<float*>(&packet.rays);
-  const int count = static_cast<int>(rays.size());
-  if (lanes > 1 && count == lanes && load_packet_(ordinary_, rays.data(), lanes, packet.context, soa)) {
-    std::fill_n(packet.valid, lanes, -1);
-    std::fill_n(packet.status, lanes, status_miss);
+void RayLoader::begin(bool coherent, Packet& packet) const {
+  packet.lanes = scene_.native_packet();
+  begin(coherent, packet.lanes, packet.context, packet.numbers);
+}
+
+bool RayLoader::load_ordinary(std::span<const Ray> rays, Packet& packet) const {
+  const auto lanes = static_cast<std::size_t>(packet.lanes);
+  if (rays.size() < lanes) {
+    Ray padded[packet_size];
+    std::fill(std::ranges::copy(rays, padded).out, padded + lanes, rays.back());
+    return load_ordinary({padded, lanes}, packet);
+  }
+  return code_.load(ordinary_, rays.data(), packet.lanes, has_quadrics_ ? &packet.context : nullptr, packet.numbers);
+}
+
+bool RayLoader::load(std::span<const Ray> rays, Packet& packet) const {
+  const int lanes = packet.lanes, count = static_cast<int>(rays.size());
+  std::fill_n(packet.status, lanes, status_miss);
+  packet.odd = !load_ordinary(rays, packet);
+  if (!packet.odd) {
+    std::fill(std::fill_n(packet.valid, count, -1), packet.valid + lanes, 0);
     return true;
   }
-  bool any = false;
   std::fill_n(packet.valid, lanes, 0);
+  bool any = false;
   for (int i = 0; i < count; ++i) {
-    const Ray& ray = rays[static_cast<std::size_t>(i)];
-    Placed placed;
-    packet.status[i] = status_miss;
-    if (!is_ordinary(ray)) {
-      const bool valid = is_valid(ray);
-      packet.status[i] = valid ? status_miss : status_invalid;
-      placed = valid ? place(ray) : Placed{.traced = false};
-    }
-    packet.valid[i] = placed.traced ? -1 : 0;
-    any |= placed.traced;
-    if (placed.traced) load_lane(ray, placed, lanes, i, packet.context, soa);
+    const bool traced =
+        load_lane(rays[static_cast<std::size_t>(i)], lanes, i, packet.context, packet.numbers, packet.status[i]);
+    packet.valid[i] = traced ? -1 : 0;
+    any |= traced;
   }
   return any;
 }
 
-template void RayLoader::begin(int, bool, Packet<RTCRayHit>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRayHit>&) const;
-template void RayLoader::begin(int, bool, Packet<RTCRayHit8>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRayHit8>&) const;
-template void RayLoader::begin(int, bool, Packet<RTCRayHit16>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRayHit16>&) const;
-template void RayLoader::begin(int, bool, Packet<RTCRay>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRay>&) const;
-template void RayLoader::begin(int, bool, Packet<RTCRay8>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRay8>&) const;
-template void RayLoader::begin(int, bool, Packet<RTCRay16>&) const;
-template bool RayLoader::load(std::span<const Ray>, int, Packet<RTCRay16>&) const;
+void RayLoader::begin(Single& single) const { begin(false, 1, single.context, reinterpret_cast<float*>(&single.ray)); }
+
+void RayLoader::take(const Packet& packet, int lane, Single& single) const {
+  typedef float Four __attribute__((vector_size(16)));
+  const auto number = [&](int row) { return packet.row(row)[lane]; };
+  // In two pieces, as Embree reads them: smaller ones would have it wait until they are written.
+  const Four origin{number(org_x_row), number(org_x_row + 1), number(org_x_row + 2), number(tnear_row)};
+  const Four direction{number(dir_x_row), number(dir_x_row + 1), number(dir_x_row + 2), 0};
+  std::memcpy(&single.ray.ray.org_x, &origin, sizeof origin);
+  std::memcpy(&single.ray.ray.dir_x, &direction, sizeof direction);
+  single.ray.ray.tfar = number(tfar_row);
+  single.ray.hit.geomID = single.ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  if (!has_quadrics_) return;
+  const QuadricContext& from = packet.context;
+  QuadricContext& to = single.context;
+  to.ox[0] = from.ox[lane], to.oy[0] = from.oy[lane], to.oz[0] = from.oz[lane];
+  to.dx[0] = from.dx[lane], to.dy[0] = from.dy[lane], to.dz[0] = from.dz[lane];
+  to.tmin[0] = from.tmin[lane], to.nearest[0] = from.nearest[lane], to.object[0] = from.object[lane];
+  to.shift[0] = from.shift[lane], to.rate[0] = from.rate[lane], to.scale[0] = from.scale[lane];
+}
+
+bool RayLoader::load(const Ray& ray, Single& single) const {
+  std::uint32_t status;
+  single.ray.hit.geomID = single.ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return load_lane(ray, 1, 0, single.context, reinterpret_cast<float*>(&single.ray), status);
+}
 
 }  // namespace rayengine

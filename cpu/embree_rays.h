@@ -14,29 +14,45 @@ class RayLoader {
  public:
   RayLoader(const EmbreeScene& scene, Precision precision);
 
-  /// Sets what all packets have in common.
-  template <class EmbreeRays>
-  void begin(int lanes, bool coherent, Packet<EmbreeRays>& packet) const;
+  /// Sets what all packets have in common, and their number of lanes.
+  void begin(bool coherent, Packet& packet) const;
 
-  /// Loads rays.size() <= `lanes` rays into a packet of `lanes` (1, 8 or 16); true when any of them can hit.
-  template <class EmbreeRays>
-  bool load(std::span<const Ray> rays, int lanes, Packet<EmbreeRays>& packet) const;
+  /// Loads 1 to packet.lanes rays; false when none of them can hit.
+  bool load(std::span<const Ray> rays, Packet& packet) const;
+
+  /// A packet of one lane, as single rays are traced.
+  struct Single {
+    QuadricContext context;
+    alignas(64) RTCRayHit ray;
+  };
+  void begin(Single& single) const;
+  /// One lane of a packet, without a hit.
+  void take(const Packet& packet, int lane, Single& single) const;
+  /// A ray that is not part of a packet, all of the context included; false when it cannot hit.
+  bool load(const Ray& ray, Single& single) const;
+
+  bool has_quadrics() const { return has_quadrics_; }
 
  private:
   struct Placed {
     double shift = 0, scale = 1, rate = 1;  // as in QuadricContext
     bool traced = true;
   };
+  void begin(bool coherent, int lanes, QuadricContext& context, float* numbers) const;
   bool is_ordinary(const Ray& ray) const;
   Placed place(const Ray& ray) const;
-  void load_lane(const Ray& ray, const Placed& placed, int lanes, int lane, QuadricContext& context, float* soa) const;
+  bool load_ordinary(std::span<const Ray> rays, Packet& packet) const;
+  /// Into a lane of a packet of any size; false when the ray cannot hit, where it is not valid with that status.
+  bool load_lane(const Ray& ray, int lanes, int lane, QuadricContext& context, float* numbers,
+                 std::uint32_t& status) const;
 
   const EmbreeScene& scene_;
-  LoadPacket load_packet_;
+  const PacketCode& code_;
   OrdinaryRays ordinary_;
-  Box box_;         ///< of everything finite
-  bool moves_;      ///< `fast` leaves rays where they are
-  bool unbounded_;  ///< some quadric is: rays that pass the box may hit too
+  Box box_;            ///< of everything finite
+  bool moves_;         ///< `fast` leaves rays where they are
+  bool unbounded_;     ///< some quadric is: rays that pass the box may hit too
+  bool has_quadrics_;  ///< whose callbacks read the context; nobody else does
 };
 
 }  // namespace rayengine

@@ -4,9 +4,9 @@
 #include <bit>
 #include <glm/geometric.hpp>
 #include <mutex>
-#include <type_traits>
 
 #include "accel/surface.h"
+#include "cpu/embree_hits.h"
 #include "cpu/embree_rays.h"
 #include "cpu/embree_scene.h"
 #include "cpu/ranges.h"
@@ -14,42 +14,7 @@
 namespace rayengine {
 namespace {
 
-/// Embree's answer for one ray.
-struct Answer {
-  float t, u, v;
-  glm::vec3 normal;  // of triangles; not unit
-  unsigned geom, prim, inst;
-};
-
-/// Reads lane `i` of Embree's packet, fields of `lanes` numbers.
-Answer answer(const float* soa, int lanes, int i) {
-  const auto field = [&](int f) { return soa[f * lanes + i]; };
-  const auto id = [&](int f) { return std::bit_cast<unsigned>(soa[f * lanes + i]); };
-  return {field(8), field(15), field(16), {field(12), field(13), field(14)}, id(18), id(17), id(19)};
-}
-
-void forget_hits(float* soa, int lanes) {
-  std::fill_n(soa + 18 * lanes, 2 * lanes, std::bit_cast<float>(RTC_INVALID_GEOMETRY_ID));
-}
-
-bool any_hit(const float* soa, int lanes) {
-  const float* geom = soa + 18 * lanes;
-  return std::any_of(geom, geom + lanes,
-                     [](float id) { return std::bit_cast<unsigned>(id) != RTC_INVALID_GEOMETRY_ID; });
-}
-
-/// Normals of triangles to unit length, all lanes at once; lanes without a hit hold anything.
-void normalise(float* soa, int lanes) {
-  constexpr float least = std::numeric_limits<float>::min();
-  float *x = soa + 12 * lanes, *y = x + lanes, *z = y + lanes;
-  for (int i = 0; i < lanes; ++i) {
-    const float largest = std::max(std::max(std::abs(x[i]), std::abs(y[i])), std::abs(z[i]));
-    const float scale = largest > 1e-15f && largest < 1e15f ? 1 : 1 / std::max(largest, least);  // squares would vanish
-    const float a = x[i] * scale, b = y[i] * scale, c = z[i] * scale;
-    const float per_length = 1 / std::sqrt((a * a + b * b) + c * c);
-    x[i] = a * per_length, y[i] = b * per_length, z[i] = c * per_length;
-  }
-}
+using Single = RayLoader::Single;
 
 class EmbreeTracer final : public Tracer {
  public:
@@ -57,7 +22,8 @@ class EmbreeTracer final : public Tracer {
       : precision_(precision),
         geometry_(std::move(geometry)),
         scene_(geometry_, precision),
-        loader_(scene_, precision) {}
+        loader_(scene_, precision),
+        maker_(scene_) {}
 
   std::string_view name() const override { return "embree"; }
   Precision precision() const override { return precision_; }
@@ -74,18 +40,15 @@ class EmbreeTracer final : public Tracer {
   HitLists all(std::span<const Ray> rays) override;
 
  private:
-  template <class RayHits, int lanes>
   void closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const;
-  template <class Rays, int lanes>
-  void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status) const;
+  void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const;
+  void intersect(Packet& packet) const;
+  void intersect_alone(Packet& packet, Single& single) const;
+  void occluded(Packet& packet) const;
+  void occluded_alone(Packet& packet, Single& single) const;
+  void store(std::span<const Ray> rays, const Packet& packet, Hit* hits) const;
+  void finish(const Ray& ray, const Packet& packet, int lane, Hit& hit) const;
   std::vector<Hit> all(const Ray& ray) const;
-  // These write to their last argument in place: copies of a hit cost as much as making it.
-  void triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const;
-  void quadric_hit(const Ray& ray, const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const;
-  void hit_of(const Ray& ray, const Answer& answer, const QuadricContext& context, int lane, Hit& hit) const;
-  /// Ids within `level` to those that the caller knows.
-  void set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& level, std::uint32_t object,
-               std::uint32_t primitive) const;
 
   Precision precision_;
   std::shared_ptr<const Geometry> geometry_;
@@ -93,6 +56,10 @@ class EmbreeTracer final : public Tracer {
   std::unique_ptr<EmbreeScene> filtering_;  ///< the same with the same ids, made by the first all-hits query
   std::once_flag filtering_once_;
   RayLoader loader_;
+  EmbreeHits maker_;
+  const PacketCode& code_ = packet_code(best_isa());
+  bool only_one_mesh_ = maker_.only_one_mesh();
+  std::uint32_t only_mesh_ = scene_.level(RTC_INVALID_GEOMETRY_ID).only_mesh;
   /// Tests of triangles are so cheap that shadow rays gain from packets even where they part.
   bool mostly_triangles_ = geometry_->triangles.size() > geometry_->quadrics.size();
 };
@@ -100,118 +67,107 @@ class EmbreeTracer final : public Tracer {
 /// Primary and shadow rays are coherent as they come.
 bool is_coherent(RayClass ray_class) { return ray_class != RayClass::bounce; }
 
-double absolute_sum(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+constexpr float no_geometry = std::bit_cast<float>(RTC_INVALID_GEOMETRY_ID);
 
-/// Rays into one octant visit a tree in the same order: they gain from packets whatever made them, unless they spread
-/// over all of it.
-bool keep_together(std::span<const Ray> rays) {
-  const auto octant = [](const Ray& r) {
-    return (r.direction.x < 0) | (r.direction.y < 0) << 1 | (r.direction.z < 0) << 2;
-  };
-  const glm::dvec3& first = rays[0].direction;
-  const double spread = 0.8 * absolute_sum(first);
-  return std::all_of(rays.begin(), rays.end(), [&](const Ray& r) {
-    return octant(r) == octant(rays[0]) && absolute_sum(r.direction - first) < spread;
-  });
+void EmbreeTracer::intersect(Packet& p) const {
+  if (p.lanes == 16)
+    rtcIntersect16(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRayHit16*>(p.numbers));
+  else
+    rtcIntersect8(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRayHit8*>(p.numbers));
 }
 
-/// Calls `together` or `alone` for runs of rays, whole packets each, as their directions have it.
-template <class Together, class Alone>
-void for_runs(std::span<const Ray> rays, std::size_t lanes, Together&& together, Alone&& alone) {
-  const auto packet = [&](std::size_t first) { return rays.subspan(first, std::min(lanes, rays.size() - first)); };
-  for (std::size_t first = 0, end; first < rays.size(); first = end) {
-    const bool coherent = keep_together(packet(first));
-    for (end = first + lanes; end < rays.size() && keep_together(packet(end)) == coherent;) end += lanes;
-    end = std::min(end, rays.size());
-    coherent ? together(first, end - first) : alone(first, end - first);
+void EmbreeTracer::occluded(Packet& p) const {
+  if (p.lanes == 16)
+    rtcOccluded16(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRay16*>(p.numbers));
+  else
+    rtcOccluded8(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRay8*>(p.numbers));
+}
+
+void EmbreeTracer::intersect_alone(Packet& p, Single& single) const {
+  const auto* const answer = reinterpret_cast<const float*>(&single.ray);
+  for (int lane = 0; lane < p.lanes; ++lane) {
+    if (!p.valid[lane]) continue;
+    loader_.take(p, lane, single);
+    rtcIntersect1(scene_.scene(), &single.context.embree, &single.ray);
+    p.row(tfar_row)[lane] = answer[tfar_row];
+    for (int row = normal_x_row; row < row_count; ++row) p.row(row)[lane] = answer[row];
+    if (loader_.has_quadrics()) p.context.nearest[lane] = single.context.nearest[0];
   }
 }
 
-void EmbreeTracer::set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& level, std::uint32_t object,
-                           std::uint32_t primitive) const {
-  hit.object = object, hit.primitive = primitive;
-  if (inst == RTC_INVALID_GEOMETRY_ID) return;
-  const Instance& instance = scene_.instances()[inst];
-  hit.object = instance.object;
-  hit.primitive += instance.first_primitive + level.geometry->objects[object].first_primitive;
+void EmbreeTracer::occluded_alone(Packet& p, Single& single) const {
+  for (int lane = 0; lane < p.lanes; ++lane) {
+    if (!p.valid[lane]) continue;
+    loader_.take(p, lane, single);
+    rtcOccluded1(scene_.scene(), &single.context.embree, &single.ray.ray);
+    p.row(tfar_row)[lane] = single.ray.ray.tfar;
+  }
 }
 
-void EmbreeTracer::triangle_hit(const Answer& answer, const EmbreeScene::Level& level, double t, Hit& hit) const {
-  const Geometry& g = *level.geometry;
-  const std::uint32_t object = EmbreeScene::object_of(level, answer.prim);
-  hit.t = t;
-  hit.error = 0;
-  hit.u = answer.u, hit.v = answer.v;
-  hit.normal = answer.normal;
-  hit.status = status_hit;
-  set_ids(hit, answer.inst, level, object, answer.prim - g.objects[object].first);
-  if (answer.inst == RTC_INVALID_GEOMETRY_ID) return;
-  const glm::dvec3 turned = scene_.instances()[answer.inst].to_group.normal_to_world(glm::dvec3(answer.normal));
-  hit.normal = glm::vec3(glm::normalize(turned));
+/// A hit that was stored as one of a mesh's triangles becomes what it is.
+void EmbreeTracer::finish(const Ray& ray, const Packet& p, int lane, Hit& hit) const {
+  const auto id = [&](int row) { return std::bit_cast<unsigned>(p.row(row)[lane]); };
+  const EmbreeIds ids{id(geom_row), id(prim_row), id(inst_row)};
+  if (ids.geom == RTC_INVALID_GEOMETRY_ID) {
+    hit.status = p.status[lane];
+    return;
+  }
+  if (p.odd) hit.t = p.context.shift[lane] + hit.t * p.context.scale[lane];
+  if (maker_.is_triangle(ids)) return maker_.finish_triangle(ids, hit);
+  const double t = precision_ == Precision::fast ? hit.t : p.context.nearest[lane];
+  maker_.quadric(ray, ids, hit.u, t, hit);
 }
 
-void EmbreeTracer::quadric_hit(const Ray& ray, const Answer& answer, const EmbreeScene::Level& level, double t,
-                               Hit& hit) const {
-  const Geometry& g = *level.geometry;
-  const QuadricBucket& bucket = *level.buckets[answer.geom - level.first_bucket];
-  const Quadric& quadric = g.quadrics[bucket.quadrics[answer.prim]];
-  const auto part = static_cast<std::uint32_t>(answer.u);
-  const Instance* instance = answer.inst == RTC_INVALID_GEOMETRY_ID ? nullptr : &scene_.instances()[answer.inst];
-  hit.t = t;
-  hit.error = 0;
-  hit.u = hit.v = 0;
-  hit.normal = glm::vec3(quadric_normal(g, quadric, instance, part, ray.at(t)));
-  hit.status = status_hit;
-  set_ids(hit, answer.inst, level, quadric.object, part);
+void EmbreeTracer::store(std::span<const Ray> rays, const Packet& p, Hit* hits) const {
+  if (rays.size() < static_cast<std::size_t>(p.lanes)) {
+    Hit all[packet_size];
+    code_.store(p.numbers, p.lanes, only_mesh_, all);
+    std::copy_n(all, rays.size(), hits);
+  } else {
+    code_.store(p.numbers, p.lanes, only_mesh_, hits);
+  }
+  if (only_one_mesh_ && !p.odd) return;
+  for (std::size_t i = 0; i < rays.size(); ++i) finish(rays[i], p, static_cast<int>(i), hits[i]);
 }
 
-void EmbreeTracer::hit_of(const Ray& ray, const Answer& a, const QuadricContext& context, int lane, Hit& hit) const {
-  const EmbreeScene::Level& level = scene_.level(a.inst);
-  const double t = context.shift[lane] + static_cast<double>(a.t) * context.scale[lane];
-  if (a.geom == level.triangles_id) return triangle_hit(a, level, t, hit);
-  quadric_hit(ray, a, level, precision_ == Precision::fast ? t : context.nearest[lane], hit);
-}
-
-template <class RayHits, int lanes>
 void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const {
-  Packet<RayHits> packet;
-  float* const soa = reinterpret_cast<float*>(&packet.rays);
-  loader_.begin(lanes, is_coherent(ray_class), packet);
+  Packet packet;
+  Single single;
+  loader_.begin(is_coherent(ray_class), packet);
+  loader_.begin(single);
+  const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
-    const auto now = rays.subspan(first, std::min<std::size_t>(lanes, rays.size() - first));
-    forget_hits(soa, lanes);
-    if (loader_.load(now, lanes, packet)) {
-      if constexpr (lanes == 16) rtcIntersect16(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
-      if constexpr (lanes == 8) rtcIntersect8(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
-      if constexpr (lanes == 1) rtcIntersect1(scene_.scene(), &packet.context.embree, &packet.rays);
-      if (any_hit(soa, lanes)) normalise(soa, lanes);
-    }
-    for (int i = 0; i < static_cast<int>(now.size()); ++i) {
-      const Answer a = answer(soa, lanes, i);
-      Hit& out = hits[first + static_cast<std::size_t>(i)];
-      if (a.geom == RTC_INVALID_GEOMETRY_ID)
-        out = Hit{.status = packet.status[i]};
+    const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
+    std::fill_n(packet.row(geom_row), 2 * lanes, no_geometry);  // and instances
+    if (loader_.load(now, packet)) {
+      if (is_coherent(ray_class) || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
+        intersect(packet);
       else
-        hit_of(now[static_cast<std::size_t>(i)], a, packet.context, i, out);
+        intersect_alone(packet, single);
     }
+    store(now, packet, &hits[first]);
   }
 }
 
-template <class Rays, int lanes>
-void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
-  Packet<Rays> packet;
-  loader_.begin(lanes, lanes > 1, packet);
+void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
+  Packet packet;
+  Single single;
+  loader_.begin(true, packet);
+  loader_.begin(single);
+  const bool coherent = is_coherent(ray_class) || mostly_triangles_;
+  const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
-    const auto now = rays.subspan(first, std::min<std::size_t>(lanes, rays.size() - first));
-    if (loader_.load(now, lanes, packet)) {
-      if constexpr (lanes == 16) rtcOccluded16(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
-      if constexpr (lanes == 8) rtcOccluded8(packet.valid, scene_.scene(), &packet.context.embree, &packet.rays);
-      if constexpr (lanes == 1) rtcOccluded1(scene_.scene(), &packet.context.embree, &packet.rays);
+    const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
+    if (loader_.load(now, packet)) {
+      if (coherent || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
+        occluded(packet);
+      else
+        occluded_alone(packet, single);
     }
-    const float* tfar = reinterpret_cast<const float*>(&packet.rays.tfar);
-    for (int i = 0; i < static_cast<int>(now.size()); ++i) {
+    const float* tfar = packet.row(tfar_row);
+    for (std::size_t i = 0; i < now.size(); ++i) {
       const bool occluded = packet.valid[i] && tfar[i] == -std::numeric_limits<float>::infinity();
-      status[first + static_cast<std::size_t>(i)] = packet.status[i] | (occluded ? status_hit : status_miss);
+      status[first + i] = packet.status[i] | (occluded ? status_hit : status_miss);
     }
   }
 }
@@ -219,36 +175,14 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
 void EmbreeTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) {
   check_lengths(rays.size(), hits.size());
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
-    const auto some = rays.subspan(first, last - first);
-    const auto out = hits.subspan(first, last - first);
-    const bool wide = scene_.native_packet() == 16;
-    const auto together = [&](std::size_t from, std::size_t count) {
-      if (wide) return closest_packets<RTCRayHit16, 16>(some.subspan(from, count), out.subspan(from, count), ray_class);
-      closest_packets<RTCRayHit8, 8>(some.subspan(from, count), out.subspan(from, count), ray_class);
-    };
-    const auto alone = [&](std::size_t from, std::size_t count) {
-      closest_packets<RTCRayHit, 1>(some.subspan(from, count), out.subspan(from, count), ray_class);
-    };
-    if (is_coherent(ray_class)) return together(0, some.size());
-    for_runs(some, wide ? 16 : 8, together, alone);
+    closest_packets(rays.subspan(first, last - first), hits.subspan(first, last - first), ray_class);
   });
 }
 
 void EmbreeTracer::any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) {
   check_lengths(rays.size(), status.size());
   for_ranges(rays.size(), [&](std::size_t first, std::size_t last) {
-    const auto some = rays.subspan(first, last - first);
-    const auto out = status.subspan(first, last - first);
-    const bool wide = scene_.native_packet() == 16;
-    const auto together = [&](std::size_t from, std::size_t count) {
-      if (wide) return any_packets<RTCRay16, 16>(some.subspan(from, count), out.subspan(from, count));
-      any_packets<RTCRay8, 8>(some.subspan(from, count), out.subspan(from, count));
-    };
-    const auto alone = [&](std::size_t from, std::size_t count) {
-      any_packets<RTCRay, 1>(some.subspan(from, count), out.subspan(from, count));
-    };
-    if (is_coherent(ray_class) || mostly_triangles_) return together(0, some.size());
-    for_runs(some, wide ? 16 : 8, together, alone);
+    any_packets(rays.subspan(first, last - first), status.subspan(first, last - first), ray_class);
   });
 }
 
@@ -265,23 +199,22 @@ void collect_triangle(const RTCFilterFunctionNArguments* args) {
 }
 
 std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
-  Packet<RTCRayHit> packet;
-  loader_.begin(1, false, packet);
+  Single single;
+  loader_.begin(single);
   HitCollector collector;
-  packet.context.collector = &collector;
-  packet.context.embree.filter = collect_triangle;
-  packet.rays.hit.geomID = packet.rays.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  if (loader_.load({&ray, 1}, 1, packet)) rtcIntersect1(filtering_->scene(), &packet.context.embree, &packet.rays);
+  single.context.collector = &collector;
+  single.context.embree.filter = collect_triangle;
+  if (loader_.load(ray, single)) rtcIntersect1(filtering_->scene(), &single.context.embree, &single.ray);
   std::vector<Hit> hits;
   for (const auto& e : collector.entries) {
-    const EmbreeScene::Level& level = scene_.level(e.inst);
-    Hit& hit = hits.emplace_back();
-    if (e.geom != level.triangles_id) {
-      quadric_hit(ray, {0, e.u, e.v, {}, e.geom, e.prim, e.inst}, level, e.t, hit);
+    const EmbreeIds ids{e.geom, e.prim, e.inst};
+    Hit& hit = hits.emplace_back(Hit{.t = e.t, .u = e.u, .v = e.v});
+    if (!maker_.is_triangle(ids)) {
+      maker_.quadric(ray, ids, e.u, e.t, hit);
       continue;
     }
-    const glm::vec3 normal(glm::normalize(triangle_normal(*level.geometry, e.prim)));
-    triangle_hit({0, e.u, e.v, normal, e.geom, e.prim, e.inst}, level, e.t, hit);
+    hit.normal = glm::vec3(glm::normalize(triangle_normal(*scene_.level(e.inst).geometry, e.prim)));
+    maker_.finish_triangle(ids, hit);
   }
   sort_hits(hits);
   return hits;

@@ -10,14 +10,36 @@
 
 namespace rayengine {
 
-/// A packet of rays as Embree and the quadric callbacks take them: EmbreeRays is RTCRay... or RTCRayHit... of 1, 8
-/// or 16.
-template <class EmbreeRays>
+/// Rows of a packet, one number of every lane each, in the order of Embree's RTCRayHit: the first 12 are an RTCRay.
+enum Row {
+  org_x_row,
+  tnear_row = 3,
+  dir_x_row,
+  time_row = 7,
+  tfar_row,
+  mask_row,
+  id_row,
+  flags_row,
+  normal_x_row,
+  u_row = 15,
+  v_row,
+  prim_row,
+  geom_row,
+  inst_row,
+  row_count
+};
+
+/// Rays as Embree and the quadric callbacks take them, 8 or 16 together.
 struct Packet {
+  int lanes;
   QuadricContext context;
-  alignas(64) EmbreeRays rays;
-  alignas(64) int valid[packet_size];  ///< Embree's mask: -1 or 0
-  std::uint32_t status[packet_size];   ///< status_invalid or 0
+  alignas(64) float numbers[row_count * packet_size];  ///< an RTCRayHit8 or RTCRayHit16: rows of `lanes`
+  alignas(64) int valid[packet_size];                  ///< Embree's mask: -1 or 0
+  std::uint32_t status[packet_size];                   ///< status_invalid or 0
+  bool odd;  ///< some ray was moved, scaled or left out: Embree's t is not ours
+
+  float* row(int r) { return numbers + r * lanes; }
+  const float* row(int r) const { return numbers + r * lanes; }
 };
 
 /// Rays within these bounds go to Embree as they are. Sums of absolute components are compared, which NaN never passes.
@@ -26,21 +48,30 @@ struct OrdinaryRays {
   double shortest = 0, longest = 0;  ///< of a direction
 };
 
-/// Loads a full packet (8 or 16 rays) when all its rays are ordinary, else returns false. `soa` is Embree's packet:
-/// fields of `lanes` floats, of which origin, tnear, direction and tfar are written; bounds are rounded outward.
-using LoadPacket = bool (*)(const OrdinaryRays& ordinary, const Ray* rays, int lanes, QuadricContext& context,
-                            float* soa);
+/// What is done to whole packets of 8 or 16 lanes, `numbers` being those of a Packet; one of each instruction set.
+struct PacketCode {
+  /// Loads the rays when all of them are ordinary, else returns false. Origin, tnear, direction and tfar are written,
+  /// bounds rounded outward; and `context` unless it is null.
+  bool (*load)(const OrdinaryRays& ordinary, const Ray* rays, int lanes, QuadricContext* context, float* numbers);
 
-LoadPacket packet_loader(Isa isa);
+  /// Whether rays go into one octant, so that they visit a tree in the same order and gain from packets whatever made
+  /// them, and do not spread over all of it.
+  bool (*keep_together)(const float* numbers, int lanes);
+
+  /// Writes Embree's answers, as if all were hits of the triangles of `object`, or misses.
+  void (*store)(const float* numbers, int lanes, std::uint32_t object, Hit* hits);
+};
+
+const PacketCode& packet_code(Isa isa);
 
 namespace sse2 {
-bool load_packet(const OrdinaryRays&, const Ray*, int, QuadricContext&, float*);
+extern const PacketCode packet_code;
 }
 namespace avx2 {
-bool load_packet(const OrdinaryRays&, const Ray*, int, QuadricContext&, float*);
+extern const PacketCode packet_code;
 }
 namespace avx512 {
-bool load_packet(const OrdinaryRays&, const Ray*, int, QuadricContext&, float*);
+extern const PacketCode packet_code;
 }
 
 }  // namespace rayengine

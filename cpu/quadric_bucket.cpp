@@ -18,9 +18,9 @@ const QuadricCallbacks& quadric_callbacks(Isa isa, Precision precision) {
   return fast ? sse2::fast_callbacks : sse2::robust_callbacks;
 }
 
-LoadPacket packet_loader(Isa isa) {
-  if (isa == Isa::avx512) return avx512::load_packet;
-  return isa == Isa::avx2 ? avx2::load_packet : sse2::load_packet;
+const PacketCode& packet_code(Isa isa) {
+  if (isa == Isa::avx512) return avx512::packet_code;
+  return isa == Isa::avx2 ? avx2::packet_code : sse2::packet_code;
 }
 
 }  // namespace rayengine

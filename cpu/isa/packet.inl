@@ -1,4 +1,4 @@
-// Loading of full packets of ordinary rays, compiled once per instruction set (see lanes.inl).
+// Rays into whole packets and answers out of them, compiled once per instruction set (see lanes.inl).
 
 #include "accel/isa/lanes.inl"
 #include "cpu/packet.h"
@@ -28,11 +28,16 @@ INLINE Doubles absolute_sum(const double* x, const double* y, const double* z) {
          kernels::magnitude(read<Doubles>(z));
 }
 
-INLINE bool all_ordinary(const OrdinaryRays& ordinary, const QuadricContext& c, const double* tmax, int lanes) {
+/// Rays in double, by lanes.
+struct RayRows {
+  double *ox, *oy, *oz, *tmin, *dx, *dy, *dz, *tmax;
+};
+
+INLINE bool all_ordinary(const OrdinaryRays& ordinary, const RayRows& r, int lanes) {
   auto odd = Doubles{} != Doubles{};
   for (int i = 0; i < lanes; i += width) {
-    const Doubles o = absolute_sum(c.ox + i, c.oy + i, c.oz + i), d = absolute_sum(c.dx + i, c.dy + i, c.dz + i);
-    const Doubles from = read<Doubles>(c.tmin + i), to = read<Doubles>(tmax + i);
+    const Doubles o = absolute_sum(r.ox + i, r.oy + i, r.oz + i), d = absolute_sum(r.dx + i, r.dy + i, r.dz + i);
+    const Doubles from = read<Doubles>(r.tmin + i), to = read<Doubles>(r.tmax + i);
     odd |=
         ~((o <= ordinary.farthest) & (d >= ordinary.shortest) & (d <= ordinary.longest) & (from >= 0) & (from <= to));
   }
@@ -66,24 +71,8 @@ INLINE void next_above(const double* from, double* to, int lanes) {
   }
 }
 
-}  // namespace
-
-bool load_packet(const OrdinaryRays& ordinary, const Ray* rays, int lanes, QuadricContext& c, float* soa) {
-  alignas(64) double tmax[packet_size];
-  for (int i = 0; i < lanes; i += 4) {
-    const auto* ray = reinterpret_cast<const double*>(rays + i);
-    transpose(ray, c.ox + i, c.oy + i, c.oz + i, c.tmin + i);
-    transpose(ray + 4, c.dx + i, c.dy + i, c.dz + i, tmax + i);
-  }
-  if (!all_ordinary(ordinary, c, tmax, lanes)) return false;
-  convert(c.ox, soa, lanes);
-  convert(c.oy, soa + lanes, lanes);
-  convert(c.oz, soa + 2 * lanes, lanes);
-  convert_outward(c.tmin, soa + 3 * lanes, lanes, -1);
-  convert(c.dx, soa + 4 * lanes, lanes);
-  convert(c.dy, soa + 5 * lanes, lanes);
-  convert(c.dz, soa + 6 * lanes, lanes);
-  convert_outward(tmax, soa + 8 * lanes, lanes, 1);
+/// What the callbacks see of rays beyond their numbers, which are in its rows already.
+INLINE void begin(QuadricContext& c, const double* tmax, int lanes) {
   next_above(tmax, c.nearest, lanes);
   for (int i = 0; i < lanes; i += width) {
     write(c.object + i, Doubles{});
@@ -91,7 +80,114 @@ bool load_packet(const OrdinaryRays& ordinary, const Ray* rays, int lanes, Quadr
     write(c.rate + i, splat<Doubles>(1));
     write(c.scale + i, splat<Doubles>(1));
   }
+}
+
+INLINE bool load_rows(const OrdinaryRays& ordinary, const Ray* rays, int lanes, const RayRows& r, float* numbers) {
+  for (int i = 0; i < lanes; i += 4) {
+    const auto* ray = reinterpret_cast<const double*>(rays + i);
+    transpose(ray, r.ox + i, r.oy + i, r.oz + i, r.tmin + i);
+    transpose(ray + 4, r.dx + i, r.dy + i, r.dz + i, r.tmax + i);
+  }
+  if (!all_ordinary(ordinary, r, lanes)) return false;
+  float *const origin = numbers + org_x_row * lanes, *const direction = numbers + dir_x_row * lanes;
+  convert(r.ox, origin, lanes);
+  convert(r.oy, origin + lanes, lanes);
+  convert(r.oz, origin + 2 * lanes, lanes);
+  convert_outward(r.tmin, numbers + tnear_row * lanes, lanes, -1);
+  convert(r.dx, direction, lanes);
+  convert(r.dy, direction + lanes, lanes);
+  convert(r.dz, direction + 2 * lanes, lanes);
+  convert_outward(r.tmax, numbers + tfar_row * lanes, lanes, 1);
   return true;
 }
+
+bool load(const OrdinaryRays& ordinary, const Ray* rays, int lanes, QuadricContext* c, float* numbers) {
+  alignas(64) double tmax[packet_size];
+  if (c) {
+    if (!load_rows(ordinary, rays, lanes, {c->ox, c->oy, c->oz, c->tmin, c->dx, c->dy, c->dz, tmax}, numbers))
+      return false;
+    begin(*c, tmax, lanes);
+    return true;
+  }
+  alignas(64) double o[3][packet_size], d[3][packet_size], tmin[packet_size];
+  return load_rows(ordinary, rays, lanes, {o[0], o[1], o[2], tmin, d[0], d[1], d[2], tmax}, numbers);
+}
+
+/// Eight floats at most: packets of 8 meet AVX-512, too.
+typedef float Wide __attribute__((vector_size(ISA_BYTES < 32 ? ISA_BYTES : 32)));
+typedef int WideInts __attribute__((vector_size(sizeof(Wide))));
+constexpr int wide = sizeof(Wide) / sizeof(float);
+
+bool keep_together(const float* numbers, int lanes) {
+  const float* const d = numbers + dir_x_row * lanes;
+  float first = 0;
+  for (int axis = 0; axis < 3; ++axis) first += kernels::magnitude(d[axis * lanes]);
+  auto apart = Wide{} != Wide{};
+  for (int i = 0; i < lanes; i += wide) {
+    Wide off{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* row = d + axis * lanes;
+      const Wide all = read<Wide>(row + i), one = splat<Wide>(row[0]);
+      apart |= (all < 0) != (one < 0);
+      off += kernels::magnitude(all - one);
+    }
+    apart |= ~(off < 0.8f * first);
+  }
+  return none(apart);
+}
+
+/// Unit normals as three rows, from those of triangles, and zero where nothing was hit.
+INLINE void normalise(const float* numbers, int lanes, float (*unit)[packet_size]) {
+  constexpr float least = std::numeric_limits<float>::min();
+  const float* const from = numbers + normal_x_row * lanes;
+  for (int i = 0; i < lanes; i += wide) {
+    const Wide x = read<Wide>(from + i), y = read<Wide>(from + lanes + i), z = read<Wide>(from + 2 * lanes + i);
+    const Wide largest =
+        kernels::larger(kernels::larger(kernels::magnitude(x), kernels::magnitude(y)), kernels::magnitude(z));
+    const Wide one = splat<Wide>(1);
+    const auto moderate = (largest > 1e-15f) & (largest < 1e15f);  // squares of others would vanish
+    const Wide scale = moderate ? one : 1 / kernels::larger(largest, splat<Wide>(least));
+    const Wide a = x * scale, b = y * scale, c = z * scale;
+    const Wide per_length = 1 / kernels::root((a * a + b * b) + c * c);
+    const WideInts hit = read<WideInts>(numbers + geom_row * lanes + i) != -1;
+    write(unit[0] + i, (WideInts)(a * per_length) & hit);
+    write(unit[1] + i, (WideInts)(b * per_length) & hit);
+    write(unit[2] + i, (WideInts)(c * per_length) & hit);
+  }
+}
+
+typedef int Words __attribute__((vector_size(16)));
+typedef float FourFloats __attribute__((vector_size(16)));
+typedef double Pair __attribute__((vector_size(16)));
+
+/// Four rows of four words as columns, which go to 16 bytes each, `stride` bytes apart.
+INLINE void store_columns(Words a, Words b, Words c, Words d, char* to, std::size_t stride) {
+  const Words ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Words ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  write(to, __builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+  write(to + stride, __builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+  write(to + 2 * stride, __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5));
+  write(to + 3 * stride, __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7));
+}
+
+void store(const float* numbers, int lanes, std::uint32_t object, Hit* hits) {
+  alignas(64) float normal[3][packet_size];
+  normalise(numbers, lanes, normal);
+  for (int i = 0; i < lanes; i += 4) {
+    const auto row = [&](int r) { return read<Words>(numbers + r * lanes + i); };
+    const Words hit = row(geom_row) != -1;
+    const auto t = __builtin_convertvector((FourFloats)row(tfar_row), Four);
+    Hit* const out = hits + i;
+    for (int k = 0; k < 4; ++k) write(&out[k].t, Pair{hit[k] ? t[k] : __builtin_inf(), 0});
+    store_columns(static_cast<int>(object) | ~hit, row(prim_row) | ~hit, row(u_row) & hit, row(v_row) & hit,
+                  reinterpret_cast<char*>(&out->object), sizeof(Hit));
+    store_columns(read<Words>(normal[0] + i), read<Words>(normal[1] + i), read<Words>(normal[2] + i),
+                  hit & static_cast<int>(status_hit), reinterpret_cast<char*>(&out->normal), sizeof(Hit));
+  }
+}
+
+}  // namespace
+
+extern const PacketCode packet_code{load, keep_together, store};
 
 }  // namespace rayengine::ISA
