@@ -15,7 +15,7 @@ namespace rayengine {
 /// Calls work(first, last) for ranges that make up [0, count), on all threads; up to a grain, on the calling one.
 template <class Work>
 void for_ranges(std::size_t count, Work&& work) {
-  constexpr std::size_t grain = 1024;
+  constexpr std::size_t grain = 2048;
   if (count <= grain) return work(0, count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + grain - 1) / grain, 1),
                     [&](const auto& range) { work(range.begin() * grain, std::min(range.end() * grain, count)); });
