@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "accel/rounding.h"
 
@@ -141,31 +140,21 @@ bool RayLoader::load(std::span<const Ray> rays, Packet& packet) const {
   return any;
 }
 
-void RayLoader::begin(Single& single) const { begin(false, 1, single.context, reinterpret_cast<float*>(&single.ray)); }
+void RayLoader::begin(Singles& singles) const {
+  begin(false, 1, singles.context, reinterpret_cast<float*>(singles.rays));
+}
 
-void RayLoader::take(const Packet& packet, int lane, Single& single) const {
-  typedef float Four __attribute__((vector_size(16)));
-  const auto number = [&](int row) { return packet.row(row)[lane]; };
-  // In two pieces, as Embree reads them: smaller ones would have it wait until they are written.
-  const Four origin{number(org_x_row), number(org_x_row + 1), number(org_x_row + 2), number(tnear_row)};
-  const Four direction{number(dir_x_row), number(dir_x_row + 1), number(dir_x_row + 2), 0};
-  std::memcpy(&single.ray.ray.org_x, &origin, sizeof origin);
-  std::memcpy(&single.ray.ray.dir_x, &direction, sizeof direction);
-  single.ray.ray.tfar = number(tfar_row);
-  single.ray.hit.geomID = single.ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  if (!has_quadrics_) return;
-  const QuadricContext& from = packet.context;
-  QuadricContext& to = single.context;
+bool RayLoader::load(const Ray& ray, Singles& singles) const {
+  std::uint32_t status;
+  singles.rays[0].hit.geomID = singles.rays[0].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return load_lane(ray, 1, 0, singles.context, reinterpret_cast<float*>(singles.rays), status);
+}
+
+void RayLoader::copy_to_first(const QuadricContext& from, int lane, QuadricContext& to) {
   to.ox[0] = from.ox[lane], to.oy[0] = from.oy[lane], to.oz[0] = from.oz[lane];
   to.dx[0] = from.dx[lane], to.dy[0] = from.dy[lane], to.dz[0] = from.dz[lane];
   to.tmin[0] = from.tmin[lane], to.nearest[0] = from.nearest[lane], to.object[0] = from.object[lane];
   to.shift[0] = from.shift[lane], to.rate[0] = from.rate[lane], to.scale[0] = from.scale[lane];
-}
-
-bool RayLoader::load(const Ray& ray, Single& single) const {
-  std::uint32_t status;
-  single.ray.hit.geomID = single.ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  return load_lane(ray, 1, 0, single.context, reinterpret_cast<float*>(&single.ray), status);
 }
 
 }  // namespace rayengine

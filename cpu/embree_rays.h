@@ -20,24 +20,28 @@ class RayLoader {
   /// Loads 1 to packet.lanes rays; false when none of them can hit.
   bool load(std::span<const Ray> rays, Packet& packet) const;
 
-  /// A packet of one lane, as single rays are traced.
-  struct Single {
-    QuadricContext context;
-    alignas(64) RTCRayHit ray;
-  };
-  void begin(Single& single) const;
-  /// One lane of a packet, without a hit.
-  void take(const Packet& packet, int lane, Single& single) const;
-  /// A ray that is not part of a packet, all of the context included; false when it cannot hit.
-  bool load(const Ray& ray, Single& single) const;
-
-  bool has_quadrics() const { return has_quadrics_; }
+  /// Calls trace(context, ray) for each ray of a packet that can hit, as a packet of one lane.
+  template <class Trace>
+  void trace_alone(Packet& packet, Singles& singles, const Trace& trace) const {
+    code_.spread(packet.numbers, packet.lanes, singles.rays);
+    for (int lane = 0; lane < packet.lanes; ++lane) {
+      if (!packet.valid[lane]) continue;
+      if (has_quadrics_) copy_to_first(packet.context, lane, singles.context);
+      trace(&singles.context.embree, &singles.rays[lane]);
+      if (has_quadrics_) packet.context.nearest[lane] = singles.context.nearest[0];
+    }
+    code_.gather(singles.rays, packet.lanes, packet.numbers);
+  }
+  void begin(Singles& singles) const;
+  /// One ray without a packet, as the first of `singles`; false when it cannot hit.
+  bool load(const Ray& ray, Singles& singles) const;
 
  private:
   struct Placed {
     double shift = 0, scale = 1, rate = 1;  // as in QuadricContext
     bool traced = true;
   };
+  static void copy_to_first(const QuadricContext& from, int lane, QuadricContext& to);
   void begin(bool coherent, int lanes, QuadricContext& context, float* numbers) const;
   bool is_ordinary(const Ray& ray) const;
   Placed place(const Ray& ray) const;

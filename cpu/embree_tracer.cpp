@@ -14,8 +14,6 @@
 namespace rayengine {
 namespace {
 
-using Single = RayLoader::Single;
-
 class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(std::shared_ptr<const Geometry> geometry, Precision precision)
@@ -43,9 +41,9 @@ class EmbreeTracer final : public Tracer {
   void closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const;
   void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const;
   void intersect(Packet& packet) const;
-  void intersect_alone(Packet& packet, Single& single) const;
+  void intersect_alone(Packet& packet, Singles& singles) const;
   void occluded(Packet& packet) const;
-  void occluded_alone(Packet& packet, Single& single) const;
+  void occluded_alone(Packet& packet, Singles& singles) const;
   void store(std::span<const Ray> rays, const Packet& packet, Hit* hits) const;
   void finish(const Ray& ray, const Packet& packet, int lane, Hit& hit) const;
   std::vector<Hit> all(const Ray& ray) const;
@@ -83,25 +81,15 @@ void EmbreeTracer::occluded(Packet& p) const {
     rtcOccluded8(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRay8*>(p.numbers));
 }
 
-void EmbreeTracer::intersect_alone(Packet& p, Single& single) const {
-  const auto* const answer = reinterpret_cast<const float*>(&single.ray);
-  for (int lane = 0; lane < p.lanes; ++lane) {
-    if (!p.valid[lane]) continue;
-    loader_.take(p, lane, single);
-    rtcIntersect1(scene_.scene(), &single.context.embree, &single.ray);
-    p.row(tfar_row)[lane] = answer[tfar_row];
-    for (int row = normal_x_row; row < row_count; ++row) p.row(row)[lane] = answer[row];
-    if (loader_.has_quadrics()) p.context.nearest[lane] = single.context.nearest[0];
-  }
+void EmbreeTracer::intersect_alone(Packet& p, Singles& singles) const {
+  loader_.trace_alone(
+      p, singles, [&](RTCIntersectContext* context, RTCRayHit* ray) { rtcIntersect1(scene_.scene(), context, ray); });
 }
 
-void EmbreeTracer::occluded_alone(Packet& p, Single& single) const {
-  for (int lane = 0; lane < p.lanes; ++lane) {
-    if (!p.valid[lane]) continue;
-    loader_.take(p, lane, single);
-    rtcOccluded1(scene_.scene(), &single.context.embree, &single.ray.ray);
-    p.row(tfar_row)[lane] = single.ray.ray.tfar;
-  }
+void EmbreeTracer::occluded_alone(Packet& p, Singles& singles) const {
+  loader_.trace_alone(p, singles, [&](RTCIntersectContext* context, RTCRayHit* ray) {
+    rtcOccluded1(scene_.scene(), context, &ray->ray);
+  });
 }
 
 /// A hit that was stored as one of a mesh's triangles becomes what it is.
@@ -132,9 +120,9 @@ void EmbreeTracer::store(std::span<const Ray> rays, const Packet& p, Hit* hits) 
 
 void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const {
   Packet packet;
-  Single single;
+  Singles singles;
   loader_.begin(is_coherent(ray_class), packet);
-  loader_.begin(single);
+  loader_.begin(singles);
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
@@ -143,7 +131,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
       if (is_coherent(ray_class) || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
         intersect(packet);
       else
-        intersect_alone(packet, single);
+        intersect_alone(packet, singles);
     }
     store(now, packet, &hits[first]);
   }
@@ -151,9 +139,9 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
 
 void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
   Packet packet;
-  Single single;
+  Singles singles;
   loader_.begin(true, packet);
-  loader_.begin(single);
+  loader_.begin(singles);
   const bool coherent = is_coherent(ray_class) || mostly_triangles_;
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
@@ -162,7 +150,7 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
       if (coherent || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
         occluded(packet);
       else
-        occluded_alone(packet, single);
+        occluded_alone(packet, singles);
     }
     const float* tfar = packet.row(tfar_row);
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -199,12 +187,12 @@ void collect_triangle(const RTCFilterFunctionNArguments* args) {
 }
 
 std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
-  Single single;
-  loader_.begin(single);
+  Singles singles;
+  loader_.begin(singles);
   HitCollector collector;
-  single.context.collector = &collector;
-  single.context.embree.filter = collect_triangle;
-  if (loader_.load(ray, single)) rtcIntersect1(filtering_->scene(), &single.context.embree, &single.ray);
+  singles.context.collector = &collector;
+  singles.context.embree.filter = collect_triangle;
+  if (loader_.load(ray, singles)) rtcIntersect1(filtering_->scene(), &singles.context.embree, singles.rays);
   std::vector<Hit> hits;
   for (const auto& e : collector.entries) {
     const EmbreeIds ids{e.geom, e.prim, e.inst};

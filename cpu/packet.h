@@ -42,6 +42,12 @@ struct Packet {
   const float* row(int r) const { return numbers + r * lanes; }
 };
 
+/// The rays of a packet as Embree takes them one by one, and what the callbacks see of the one that is traced.
+struct Singles {
+  QuadricContext context;
+  alignas(64) RTCRayHit rays[packet_size];
+};
+
 /// Rays within these bounds go to Embree as they are. Sums of absolute components are compared, which NaN never passes.
 struct OrdinaryRays {
   double farthest = 0;               ///< of an origin
@@ -57,6 +63,10 @@ struct PacketCode {
   /// Whether rays go into one octant, so that they visit a tree in the same order and gain from packets whatever made
   /// them, and do not spread over all of it.
   bool (*keep_together)(const float* numbers, int lanes);
+
+  /// Every lane as a ray of its own, and back what Embree answers to them.
+  void (*spread)(const float* numbers, int lanes, RTCRayHit* singles);
+  void (*gather)(const RTCRayHit* singles, int lanes, float* numbers);
 
   /// Writes Embree's answers, as if all were hits of the triangles of `object`, or misses.
   void (*store)(const float* numbers, int lanes, std::uint32_t object, Hit* hits);

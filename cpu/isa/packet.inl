@@ -170,6 +170,26 @@ INLINE void store_columns(Words a, Words b, Words c, Words d, char* to, std::siz
   write(to + 3 * stride, __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7));
 }
 
+constexpr int fields = sizeof(RTCRayHit) / sizeof(float);
+
+void spread(const float* numbers, int lanes, RTCRayHit* singles) {
+  for (int i = 0; i < lanes; i += 4)
+    for (int field = 0; field < fields; field += 4) {
+      const auto row = [&](int r) { return read<Words>(numbers + (field + r) * lanes + i); };
+      store_columns(row(0), row(1), row(2), row(3), reinterpret_cast<char*>(singles + i) + field * sizeof(float),
+                    sizeof(RTCRayHit));
+    }
+}
+
+void gather(const RTCRayHit* singles, int lanes, float* numbers) {
+  for (int i = 0; i < lanes; i += 4)
+    for (int field = tfar_row; field < fields; field += 4) {
+      const auto words = [&](int k) { return read<Words>(reinterpret_cast<const float*>(singles + i + k) + field); };
+      float* const row = numbers + field * lanes + i;
+      store_columns(words(0), words(1), words(2), words(3), reinterpret_cast<char*>(row), lanes * sizeof(float));
+    }
+}
+
 void store(const float* numbers, int lanes, std::uint32_t object, Hit* hits) {
   alignas(64) float normal[3][packet_size];
   normalise(numbers, lanes, normal);
@@ -188,6 +208,6 @@ void store(const float* numbers, int lanes, std::uint32_t object, Hit* hits) {
 
 }  // namespace
 
-extern const PacketCode packet_code{load, keep_together, store};
+extern const PacketCode packet_code{load, keep_together, spread, gather, store};
 
 }  // namespace rayengine::ISA
