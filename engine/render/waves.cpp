@@ -19,12 +19,16 @@ constexpr std::size_t surfaces_at_once = 256;
 /// Places in the counts of rays.
 enum Kind { primary_ray, shadow_ray, reflected_ray, refracted_ray };
 
-bool matters(const glm::vec3& weight) { return std::max({weight.x, weight.y, weight.z}) >= least_weight; }
+float brightest(const glm::vec3& color) { return std::max({color.x, color.y, color.z}); }
+
+bool matters(const glm::vec3& weight) { return brightest(weight) >= least_weight; }
 
 }  // namespace
 
 Waves::Waves(const Picture& picture, TracerGate& gate)
-    : picture_(picture), gate_(gate), levels_(static_cast<std::size_t>(picture.depth) + 1) {}
+    : picture_(picture), gate_(gate), levels_(static_cast<std::size_t>(picture.depth) + 1) {
+  for (const Light& light : picture.lights) brightest_light_ = std::max(brightest_light_, brightest(light.color));
+}
 
 void Waves::Queue::reserve(std::size_t more) {
   if (size + more <= rays.size()) return;
@@ -131,7 +135,7 @@ void Waves::shade(const Ray& ray, const Surface& surface, const Path& path, LitP
   point.view = glm::vec3(-ray.direction);
   point.material = surface.material;
   point.path = path;
-  lit_ += material.diffuse > 0 || material.specular > 0;
+  lit_ += matters(path.weight * (brightest_light_ * (material.diffuse * material.color + material.specular)));
   if (next && (material.reflect > 0 || material.transmit > 0)) scatter(ray, surface, point, *next);
 }
 

@@ -80,7 +80,7 @@ class Waves {
     std::vector<Hit> hits;
     std::vector<std::uint32_t> places;
   };
-  /// A hit that lights may reach.
+  /// A hit that lights may reach, and change what is seen.
   struct LitPoint {
     Departure departure;
     glm::dvec3 normal;  ///< shading normal, facing the eye
@@ -101,6 +101,7 @@ class Waves {
 
   const Picture& picture_;
   TracerGate& gate_;
+  float brightest_light_ = 1;  ///< or as bright as white, if that is brighter
   std::vector<Queue> levels_;  ///< by depth; 0 holds the primary rays
   Queue shadow_;
   std::vector<Hit> hits_;

@@ -32,3 +32,16 @@ TEST(Kernels, LanesGiveTheBitsOfScalars) {
     EXPECT_EQ(far[i], far1);
   }
 }
+
+TEST(Kernels, HighlightsAreThoseOfExactPowersUpToWhatNobodySees) {
+  const Vec3<float> up{0, 0, 1};
+  for (const float shininess : {1.f, 19.f, 404.f, 1e5f})
+    for (int i = 0; i <= 1000; ++i) {
+      const double angle = 3.1 * i / 1000;  // between the light and the eye, which looks from straight above
+      const Vec3<float> to_light{static_cast<float>(std::sin(angle)), 0, static_cast<float>(std::cos(angle))};
+      const double half = std::atan2(to_light.x, 1.0 + to_light.z);
+      const double exact = std::pow(std::cos(half), static_cast<double>(shininess));
+      const float got = rayengine::kernels::highlight(shininess, up, to_light, up);
+      EXPECT_NEAR(got, exact, 2e-14 + 2e-7 * shininess * exact) << shininess << " at " << angle;
+    }
+}

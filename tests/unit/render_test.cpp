@@ -155,6 +155,17 @@ TEST(Render, DepthCountsTheBouncesAfterThePrimaryRay) {
 
 TEST(Render, RaysThatCannotBeSeenAreNotTraced) { EXPECT_FLOAT_EQ(hall_of_mirrors(0.5f, 40), 2 - 1 / 2048.0f); }
 
+TEST(Render, BrightLightsShowOnDarkSurfaces) {
+  Mesh triangle{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}};
+  GeometryBuilder builder;
+  builder.add(triangle);
+  Scene scene =
+      scene_of(builder, {.color = glm::vec3(1), .ambient = 0, .diffuse = 1e-4f}, one_ray({0, -1, 3}, {0, 0, 0}));
+  scene.lights = {point_light({0, 0, 2})};
+  scene.lights[0].color = glm::vec3(1e4f);
+  expect_color(seen(scene), glm::dvec3(1), 1e-5);
+}
+
 TEST(Render, InterpolatedNormalsShade) {
   Mesh triangle{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{-0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0, 0, 1}}, {{0, 1, 2}}};
   GeometryBuilder builder;
