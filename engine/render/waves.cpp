@@ -149,12 +149,11 @@ void Waves::scatter(const Ray& ray, const Surface& surface, const LitPoint& poin
     else
       mirror += glass;
   }
-  spawn(next, point, mirrored(ray.direction, surface), mirror, false);
+  if (matters(mirror)) spawn(next, point, mirrored(ray.direction, surface), mirror, false);
 }
 
 void Waves::spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight,
                   bool refracted) {
-  if (!matters(weight)) return;
   next.add(from.departure, direction, infinity, weight, from.path.sample, refracted);
   ++rays_[refracted ? refracted_ray : reflected_ray];
 }
