@@ -1,5 +1,7 @@
 // Rays into whole packets and answers out of them, compiled once per instruction set (see lanes.inl).
 
+#include <cstddef>
+
 #include "accel/isa/lanes.inl"
 #include "cpu/packet.h"
 
@@ -197,12 +199,12 @@ void store(const float* numbers, int lanes, std::uint32_t object, Hit* hits) {
     const auto row = [&](int r) { return read<Words>(numbers + r * lanes + i); };
     const Words hit = row(geom_row) != -1;
     const auto t = __builtin_convertvector((FourFloats)row(tfar_row), Four);
-    Hit* const out = hits + i;
-    for (int k = 0; k < 4; ++k) write(&out[k].t, Pair{hit[k] ? t[k] : __builtin_inf(), 0});
+    auto* const out = reinterpret_cast<char*>(hits + i);  // 16 bytes each: t, error; ids, barycentrics; normal, status
+    for (int k = 0; k < 4; ++k) write(out + k * sizeof(Hit), Pair{hit[k] ? t[k] : __builtin_inf(), 0});
     store_columns(static_cast<int>(object) | ~hit, row(prim_row) | ~hit, row(u_row) & hit, row(v_row) & hit,
-                  reinterpret_cast<char*>(&out->object), sizeof(Hit));
+                  out + offsetof(Hit, object), sizeof(Hit));
     store_columns(read<Words>(normal[0] + i), read<Words>(normal[1] + i), read<Words>(normal[2] + i),
-                  hit & static_cast<int>(status_hit), reinterpret_cast<char*>(&out->normal), sizeof(Hit));
+                  hit & static_cast<int>(status_hit), out + offsetof(Hit, normal), sizeof(Hit));
   }
 }
 
