@@ -25,9 +25,13 @@ void check_mesh(const Mesh& mesh) {
                     std::to_string(mesh.triangles[i][k]) + ", but there are " + std::to_string(mesh.positions.size()));
 }
 
-void check_mesh(const Mesh& mesh, double tolerance) {
+void check_tolerance(double tolerance) {
   if (!(tolerance > 0 && std::isfinite(tolerance)))
     throw Error("a tolerance of " + std::to_string(tolerance) + " cannot be kept: give a finite number above 0");
+}
+
+void check_mesh(const Mesh& mesh, double tolerance) {
+  check_tolerance(tolerance);
   check_mesh(mesh);
 }
 

@@ -134,7 +134,10 @@ DeviceMeasurements measure_device(int threads) {
   device.recognise_whole = seconds_each(ball, [&] { recognise(ball, 0.01, Pieces::whole); });
   device.recognise_parts = seconds_each(tubes, [&] { recognise(tubes, 0.01, Pieces::parts); });
   constexpr double sag = 0.01;  // of a ball of radius 1: far larger than its triangles
-  device.simplify = seconds_each(ball, [&] { coarsen(ball, sag); });
+  GeometryBuilder builder;
+  builder.add(ball);
+  const auto geometry = builder.build();
+  device.simplify = seconds_each(ball, [&] { coarsen(*geometry, 0, sag); });
   return device;
 }
 

@@ -57,7 +57,7 @@ class ModelBuilder {
       case Representation::prepared: return recalled_coarser();
       case Representation::simplified:
         if (plan_.prepare && tools_.simplify) return coarser(tools_.simplify, kept_allowance(allowed()));
-        return recalled_coarser() || coarser(coarsen, allowed());
+        return recalled_coarser() || take(coarsen(geometry_, object_, allowed()));
       case Representation::instance: break;  // found below, not planned
     }
     return false;
@@ -79,7 +79,7 @@ class ModelBuilder {
 
   bool take(const Mesh& mesh, const Recognition& found) {
     if (found.quadrics.empty()) return false;
-    Replacement what = replacement(mesh);
+    Replacement what = replacement();
     for (const RecognisedQuadric& q : found.quadrics) {
       add(q.shape, material(), q.to_world);
       what.distance = std::max(what.distance, q.residual);
@@ -100,11 +100,13 @@ class ModelBuilder {
 
   template <class Find>
   bool coarser(const Find& find, double distance) {
-    const Mesh mesh = mesh_of(geometry_, object_);
-    const std::optional<CoarserMesh> coarser = find(mesh, distance);
-    if (!coarser || coarser->mesh.triangles.size() >= mesh.triangles.size()) return false;
+    return take(find(mesh_of(geometry_, object_), distance));
+  }
+
+  bool take(const std::optional<CoarserMesh>& coarser) {
+    if (!coarser || coarser->mesh.triangles.size() >= primitive_count(geometry_, object_)) return false;
     add(coarser->mesh, material());
-    Replacement what = replacement(mesh);
+    Replacement what = replacement();
     what.triangles_left = static_cast<std::uint32_t>(coarser->mesh.triangles.size());
     what.distance = coarser->distance;
     replaced_.push_back(what);
@@ -157,8 +159,8 @@ class ModelBuilder {
 
   void keep() { add(geometry_, object_); }
 
-  Replacement replacement(const Mesh& mesh) const {
-    return {object_, plan_.objects[object_], static_cast<std::uint32_t>(mesh.triangles.size()), 0, 0, 0};
+  Replacement replacement() const {
+    return {object_, plan_.objects[object_], primitive_count(geometry_, object_), 0, 0, 0};
   }
 
   std::uint32_t material() const { return geometry_.objects[object_].material; }

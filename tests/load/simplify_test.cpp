@@ -276,9 +276,15 @@ TEST(Simplify, KeepsItsPromiseOnAModelledMesh) {
   EXPECT_LT(expect_kept(cow, 0.08, 100).mesh.triangles.size(), cow.triangles.size() / 2);
 }
 
+std::optional<CoarserMesh> coarsened(const Mesh& mesh, double tolerance) {
+  GeometryBuilder builder;
+  builder.add(mesh);
+  return coarsen(*builder.build(), 0, tolerance);
+}
+
 /// Whether there is a coarser mesh; expects that it keeps its bound.
 std::optional<CoarserMesh> expect_coarsened(const Mesh& mesh, double tolerance) {
-  const auto result = coarsen(mesh, tolerance);
+  const auto result = coarsened(mesh, tolerance);
   if (!result) return {};
   EXPECT_LE(result->distance, tolerance);
   EXPECT_LE(2 * result->mesh.triangles.size(), mesh.triangles.size());
@@ -322,18 +328,47 @@ TEST(Coarsen, KeepsItsBoundWhateverTheMesh) {
   EXPECT_GE(coarsened, 7);
 }
 
+/// A sheet of n squares a side without the triangles that have a corner within `radius` of its middle; those stay as
+/// vertices of none.
+Mesh holed_sheet(std::uint32_t n, double radius) {
+  Mesh mesh = flat_sheet(n);
+  const glm::dvec3 middle = (mesh.positions.front() + mesh.positions.back()) / 2.;
+  std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+    for (int k = 0; k < 3; ++k)
+      if (glm::distance(mesh.positions[t[k]], middle) < radius) return true;
+    return false;
+  });
+  return mesh;
+}
+
+TEST(Coarsen, KeepsHolesThoughVerticesLieInThem) {
+  for (const double radius : {0.03, 0.06, 0.1, 0.2, 0.3}) EXPECT_TRUE(expect_coarsened(holed_sheet(120, radius), 0.05));
+}
+
+TEST(Coarsen, KeepsItsBoundOnBumpsOfAnySize) {
+  int coarsened = 0;
+  for (const double waves : {3., 10., 40.})
+    for (const double height : {0.003, 0.03}) {
+      Mesh bumpy = subdivided_sphere(5);
+      for (glm::dvec3& p : bumpy.positions)
+        p *= 1 + height * std::sin(waves * p.x) * std::sin(waves * p.y + 1) * std::sin(waves * p.z);
+      for (const double tolerance : {0.05, 0.1}) coarsened += expect_coarsened(bumpy, tolerance).has_value();
+    }
+  EXPECT_GE(coarsened, 5);
+}
+
 TEST(Coarsen, LeavesWhatHasNothingToDrop) {
   const Mesh sphere = subdivided_sphere(3);
-  for (const double tolerance : {1e-300, 1e-6, 0.01}) EXPECT_FALSE(coarsen(sphere, tolerance)) << tolerance;
-  EXPECT_FALSE(coarsen(Mesh{}, 1));
-  EXPECT_FALSE(coarsen(moved(sphere, {1e17, 0, 0}), 0.1));
+  for (const double tolerance : {1e-300, 1e-6, 0.01}) EXPECT_FALSE(coarsened(sphere, tolerance)) << tolerance;
+  EXPECT_FALSE(coarsened(Mesh{}, 1));
+  EXPECT_FALSE(coarsened(moved(sphere, {1e17, 0, 0}), 0.1));
   for (const double tolerance : {0., -1., std::numeric_limits<double>::quiet_NaN(), infinity})
-    EXPECT_THROW(coarsen(sphere, tolerance), Error);
+    EXPECT_THROW(coarsened(sphere, tolerance), Error);
 }
 
 TEST(Coarsen, IsTheSameEachTime) {
   const Mesh sphere = subdivided_sphere(6);
-  const auto a = coarsen(sphere, 0.03), b = coarsen(sphere, 0.03);
+  const auto a = coarsened(sphere, 0.03), b = coarsened(sphere, 0.03);
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->mesh.triangles, b->mesh.triangles);
   EXPECT_EQ(a->mesh.positions, b->mesh.positions);

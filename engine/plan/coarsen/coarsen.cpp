@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "accel/check_mesh.h"
+#include "engine/plan/coarsen/given.h"
 #include "engine/plan/coarsen/lattice_cells.h"
 
 namespace rayengine {
@@ -15,7 +16,6 @@ constexpr double side = 1.9;              // of the lattice, in tolerances: of m
 constexpr double worthwhile_share = 0.5;  // of the triangles that may be left
 constexpr double least_cosine = 0.1;      // of the normals before and after: no triangle may fold over or stand on edge
 constexpr int most_rounds = 6;            // of leaving cells alone where a proof fails
-constexpr std::size_t chunks = 64;        // of the triangles, done side by side
 
 glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return glm::cross(b - a, c - a);
@@ -28,21 +28,21 @@ bool has_three(const glm::uvec3& t) { return t.x != t.y && t.y != t.z && t.z != 
 
 class Coarsening {
  public:
-  Coarsening(const Mesh& mesh, const Box& box, double tolerance)
-      : mesh_(mesh),
+  Coarsening(const Given& given, double tolerance)
+      : given_(given),
         tolerance_(tolerance),
-        cells_(mesh.positions, box, side * tolerance),
+        cells_(given.vertices(), given.box(), side * tolerance),
         middles_(cells_.count()),
-        joins_(mesh.positions.size()),
+        joins_(given.vertex_count()),
         stirred_(cells_.count(), true) {}
 
   std::optional<CoarserMesh> run() {
-    if (cells_.count() == 0 || double(cells_.count()) > worthwhile_share * double(mesh_.positions.size())) return {};
+    if (cells_.count() == 0 || double(cells_.count()) > worthwhile_share * double(given_.vertex_count())) return {};
     find_middles();
     for (int round = 0; round < most_rounds; ++round) {
       number();
       collect();
-      if (double(left_.size()) > worthwhile_share * double(mesh_.triangles.size())) return {};
+      if (double(left_.size()) > worthwhile_share * double(given_.triangle_count())) return {};
       if (!leave_alone()) return result();
     }
     return {};
@@ -65,12 +65,12 @@ class Coarsening {
     tbb::parallel_for(std::uint32_t{0}, cells_.count(), [&](std::uint32_t c) {
       const auto members = cells_.members(c);
       Box box;
-      for (const std::uint32_t v : members) box.add(mesh_.positions[v]);
+      for (const std::uint32_t v : members) box.add(given_.position(v));
       Middle& m = middles_[c];
       m.position = glm::dvec3(rounded(box.center()));
       double farthest = 0;
       for (const std::uint32_t v : members) {
-        const glm::dvec3 d = mesh_.positions[v] - m.position;
+        const glm::dvec3 d = given_.position(v) - m.position;
         joins_[v] = glm::dot(d, d) <= tolerance_ * tolerance_;
         if (joins_[v]) farthest = std::max(farthest, glm::dot(d, d)), ++m.joined;
       }
@@ -85,7 +85,7 @@ class Coarsening {
     for (std::uint32_t c = 0; c < cells_.count(); ++c)
       first_[c + 1] = first_[c] + static_cast<std::uint32_t>(cells_.members(c).size()) -
                       (middles_[c].together ? middles_[c].joined - 1 : 0);
-    number_.resize(mesh_.positions.size());
+    number_.resize(given_.vertex_count());
     tbb::parallel_for(std::uint32_t{0}, cells_.count(), [&](std::uint32_t c) {
       std::uint32_t next = first_[c] + middles_[c].together;
       for (const std::uint32_t v : cells_.members(c))
@@ -95,20 +95,10 @@ class Coarsening {
 
   glm::uvec3 moved(const glm::uvec3& t) const { return {number_[t.x], number_[t.y], number_[t.z]}; }
 
-  /// Calls visit(chunk, triangle) for every triangle, those of a chunk in order.
-  template <class Visit>
-  void each_triangle(Visit visit) const {
-    const std::size_t count = mesh_.triangles.size();
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-      for (std::size_t i = count * chunk / chunks; i < count * (chunk + 1) / chunks; ++i)
-        visit(chunk, static_cast<std::uint32_t>(i));
-    });
-  }
-
   void collect() {
     std::array<std::vector<Left>, chunks> lists;
-    each_triangle([&](std::size_t chunk, std::uint32_t i) {
-      if (const glm::uvec3 t = moved(mesh_.triangles[i]); has_three(t)) lists[chunk].push_back({t, i});
+    given_.each_triangle([&](std::size_t chunk, std::uint32_t i, const glm::uvec3& given) {
+      if (const glm::uvec3 t = moved(given); has_three(t)) lists[chunk].push_back({t, i});
     });
     left_.clear();
     for (const auto& list : lists) left_.insert(left_.end(), list.begin(), list.end());
@@ -116,13 +106,13 @@ class Coarsening {
 
   glm::dvec3 position(std::uint32_t vertex) const {
     const std::uint32_t c = cells_.of(vertex);
-    return middles_[c].together && joins_[vertex] ? middles_[c].position : mesh_.positions[vertex];
+    return middles_[c].together && joins_[vertex] ? middles_[c].position : given_.position(vertex);
   }
 
   /// Whether it faces as it did before.
   bool faces_on(const Left& left) const {
-    const glm::uvec3& t = mesh_.triangles[left.source];
-    const glm::dvec3 before = area_vector(mesh_.positions[t.x], mesh_.positions[t.y], mesh_.positions[t.z]);
+    const glm::uvec3 t = given_.triangle(left.source);
+    const glm::dvec3 before = area_vector(given_.position(t.x), given_.position(t.y), given_.position(t.z));
     const glm::dvec3 after = area_vector(position(t.x), position(t.y), position(t.z));
     const double product = glm::dot(before, after);
     return product > 0 &&
@@ -161,8 +151,7 @@ class Coarsening {
     for (const Left& l : left_)
       for (int k = 0; k < 3; ++k) used_[l.corners[k]] = true;
     std::array<std::vector<std::uint32_t>, chunks> failing;
-    each_triangle([&](std::size_t chunk, std::uint32_t i) {
-      const glm::uvec3& given = mesh_.triangles[i];
+    given_.each_triangle([&](std::size_t chunk, std::uint32_t i, const glm::uvec3& given) {
       if (!any_corner(given, stirred_)) return;
       const glm::uvec3 t = moved(given);
       if (has_three(t) ? !faces_on({t, i}) : !is_covered(t)) failing[chunk].push_back(i);
@@ -172,7 +161,7 @@ class Coarsening {
     for (const auto& list : failing)
       for (const std::uint32_t i : list)
         for (int k = 0; k < 3; ++k) {
-          const std::uint32_t c = cells_.of(mesh_.triangles[i][k]);
+          const std::uint32_t c = cells_.of(given_.triangle(i)[k]);
           if (!middles_[c].together) continue;
           any = true, left_alone[c] = true;
           middles_[c].together = false;
@@ -189,7 +178,7 @@ class Coarsening {
   void stir(const std::vector<char>& left_alone) {
     stirred_ = left_alone;
     for (const Left& l : left_)
-      if (const glm::uvec3& t = mesh_.triangles[l.source]; any_corner(t, left_alone))
+      if (const glm::uvec3 t = given_.triangle(l.source); any_corner(t, left_alone))
         for (int k = 0; k < 3; ++k) stirred_[cells_.of(t[k])] = true;
   }
 
@@ -204,7 +193,7 @@ class Coarsening {
         if (!used_[number_[v]] || p != no_id) continue;
         p = static_cast<std::uint32_t>(made.positions.size());
         made.positions.push_back(position(v));
-        if (!mesh_.normals.empty()) made.normals.push_back(mesh_.normals[v]);
+        if (given_.has_normals()) made.normals.push_back(given_.normal(v));
       }
     }
     made.triangles.reserve(left_.size());
@@ -212,7 +201,7 @@ class Coarsening {
     return coarser;
   }
 
-  const Mesh& mesh_;
+  const Given& given_;
   double tolerance_;
   LatticeCells cells_;
   std::vector<Middle> middles_;        // by cell
@@ -227,13 +216,12 @@ class Coarsening {
 
 }  // namespace
 
-std::optional<CoarserMesh> coarsen(const Mesh& mesh, double tolerance) {
-  check_mesh(mesh, tolerance);
-  Box box;
-  for (const glm::dvec3& p : mesh.positions) box.add(p);
-  const double roundings = 16 * 0x1p-53 * box.extent();
-  if (mesh.triangles.empty() || !(roundings < 0.5 * tolerance)) return {};
-  std::optional<CoarserMesh> found = Coarsening(mesh, box, tolerance - roundings).run();
+std::optional<CoarserMesh> coarsen(const Geometry& geometry, std::uint32_t object, double tolerance) {
+  check_tolerance(tolerance);
+  const Given given(geometry, object);
+  const double roundings = 16 * 0x1p-53 * given.box().extent();
+  if (given.triangle_count() == 0 || !(roundings < 0.5 * tolerance)) return {};
+  std::optional<CoarserMesh> found = Coarsening(given, tolerance - roundings).run();
   if (found) found->distance += roundings;
   return found;
 }

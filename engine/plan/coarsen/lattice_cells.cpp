@@ -34,9 +34,9 @@ std::uint32_t number_marked(std::span<std::uint32_t> places) {
 
 /// The point of the lattice that is nearest to one without negative coordinates: of the corners of its cubes, or of
 /// their middles. The latter are told by odd z.
-glm::ivec3 nearest(const glm::dvec3& p) {
-  const glm::ivec3 corner(p + 0.5), middle(p);
-  const glm::dvec3 a = p - glm::dvec3(corner), b = p - glm::dvec3(middle) - 0.5;
+glm::ivec3 nearest(const glm::vec3& p) {
+  const glm::ivec3 corner(p + 0.5f), middle(p);
+  const glm::vec3 a = p - glm::vec3(corner), b = p - glm::vec3(middle) - 0.5f;
   const bool at_corner = glm::dot(a, a) <= glm::dot(b, b);
   glm::ivec3 at = at_corner ? corner : middle;
   at.z = 2 * at.z + !at_corner;
@@ -45,14 +45,15 @@ glm::ivec3 nearest(const glm::dvec3& p) {
 
 }  // namespace
 
-LatticeCells::LatticeCells(std::span<const glm::dvec3> points, const Box& box, double side) {
+LatticeCells::LatticeCells(std::span<const glm::vec3> points, const Box& box, double side) {
   const glm::dvec3 bricks = glm::floor((box.size() / side + 1.) * glm::dvec3(1, 1, 2) / 8.) + 1.;
   if (!(bricks.x * bricks.y * bricks.z <= most_bricks)) return;
   const glm::ivec3 size(bricks);
   std::vector<std::uint32_t> keys(points.size());  // a brick, and 9 bits within
-  const double per_side = 1 / side;
+  const glm::vec3 lower(box.lower);
+  const auto per_side = static_cast<float>(1 / side);
   for_each_index(points.size(), [&](std::size_t i) {
-    const glm::uvec3 at(glm::clamp(nearest((points[i] - box.lower) * per_side), glm::ivec3(0), 8 * size - 1));
+    const glm::uvec3 at(glm::clamp(nearest((points[i] - lower) * per_side), glm::ivec3(0), 8 * size - 1));
     const glm::uvec3 brick = at >> 3u, in = at & 7u;
     keys[i] = ((brick.z * size.y + brick.y) * size.x + brick.x) << 9 | in.z << 6 | in.y << 3 | in.x;
   });

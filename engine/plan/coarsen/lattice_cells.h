@@ -15,7 +15,7 @@ class LatticeCells {
  public:
   /// Each point lies in `box`. Nothing is in any cell where there would be more bricks of 8 x 8 x 8 than can be
   /// numbered.
-  LatticeCells(std::span<const glm::dvec3> points, const Box& box, double side);
+  LatticeCells(std::span<const glm::vec3> points, const Box& box, double side);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(first_.size()) - 1; }
   std::uint32_t of(std::uint32_t point) const { return cell_of_[point]; }
