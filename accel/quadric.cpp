@@ -84,6 +84,12 @@ Box sphere_bounds(const Quadric& q, const Affine& map) {
   return {glm::max(box.lower, clipped.lower), glm::min(box.upper, clipped.upper)};
 }
 
+/// Scenes of many spheres are common, and no matrix need be inverted for them.
+Box ball_bounds(const Quadric& q) {
+  const double radius = 1 / std::abs(q.to_object.linear[0][0]);
+  return {q.to_object.origin - radius, q.to_object.origin + radius};
+}
+
 }  // namespace
 
 std::string_view to_string(QuadricType type) { return type_names[static_cast<std::size_t>(type)]; }
@@ -113,6 +119,7 @@ void add_traits(TraitsByType& traits, std::span<const Quadric> quadrics) {
 }
 
 Box bounds(const Quadric& q, const GeneralForm* form) {
+  if (is_ball(q)) return ball_bounds(q);
   const Affine map = object_to_world(q.to_object);
   switch (q.type) {
     case QuadricType::sphere: return sphere_bounds(q, map);

@@ -207,10 +207,15 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const ObjectStatistics& o = scene.objects[i];
     const double allowed = model_share * allowance(tolerance, o, scene.pixel);
+    plan.allowances.push_back(allowed);
+    if (o.triangles == 0) {  // often many, with nothing to weigh
+      plan.objects.push_back(Representation::kept);
+      ++tallies[0].objects;
+      continue;
+    }
     const Options options(o, allowed, scene, device, usual, effort);
     const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
     plan.objects.push_back(best.representation);
-    plan.allowances.push_back(allowed);
     tallies[static_cast<std::size_t>(best.representation)].add(o, best.seconds, options.kept().seconds);
   }
   for (std::size_t r = 0; r < tallies.size(); ++r)
