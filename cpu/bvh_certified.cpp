@@ -126,8 +126,6 @@ bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
 }
 
 Hit CertifiedBvh::nearest(const Ray& ray, const BvhAnswer& answer) const {
-  if (instances_.empty() && !answer.unsure)
-    return answer.part == BvhAnswer::miss ? Hit{} : hit_of(ray, {&scene_.geometry(), nullptr, answer});
   Nearest nearest;
   if (answer.part != BvhAnswer::miss) nearest.set({&scene_.geometry(), nullptr, answer});
   if (answer.unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))
@@ -139,10 +137,12 @@ void CertifiedBvh::closest(std::span<const Ray> rays, std::span<Hit> hits, RayCl
   check_lengths(rays.size(), hits.size());
   for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
     const auto mine = rays.subspan(begin, end - begin);
-    std::vector<BvhAnswer> answers(mine.size());
+    BvhAnswer answers[longest_run];
     const auto trace = [&](std::size_t first, std::size_t last) {
-      bvh_queries().certain_closest(scene_.job(), &mine[first], last - first, {}, &answers[first]);
-      for (std::size_t i = first; i < last; ++i) hits[begin + i] = nearest(mine[i], answers[i]);
+      bvh_queries().certain_closest(scene_.job(), &mine[first], last - first, {}, answers);
+      store_hits(scene_.geometry(), &mine[first], std::span(answers, last - first), &hits[begin + first]);
+      for (std::size_t i = first; i < last; ++i)
+        if (answers[i - first].unsure || !instances_.empty()) hits[begin + i] = nearest(mine[i], answers[i - first]);
     };
     for_runs(
         mine, [&](const Ray& ray) { return may_certify(ray); }, trace,

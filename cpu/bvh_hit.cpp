@@ -23,6 +23,15 @@ void set_quadric(const Ray& ray, const BvhFound& found, Hit& hit) {
   hit.normal = glm::vec3(quadric_normal(*found.geometry, quadric, found.instance, a.part, ray.at(a.t)));
 }
 
+void set_hit(const Ray& ray, const BvhFound& found, Hit& hit) {
+  const BvhAnswer& a = found.answer;
+  hit.t = a.t, hit.error = a.error, hit.u = a.u, hit.v = a.v, hit.status = status_hit;
+  if (a.part == BvhAnswer::triangle)
+    set_triangle(found, hit);
+  else
+    set_quadric(ray, found, hit);
+}
+
 }  // namespace
 
 void append(void* answers, const BvhAnswer& answer) {
@@ -30,16 +39,21 @@ void append(void* answers, const BvhAnswer& answer) {
 }
 
 Hit hit_of(const Ray& ray, const BvhFound& found) {
-  const BvhAnswer& a = found.answer;
-  Hit hit{.t = a.t, .error = a.error, .u = a.u, .v = a.v, .status = status_hit};
-  if (a.part == BvhAnswer::triangle)
-    set_triangle(found, hit);
-  else
-    set_quadric(ray, found, hit);
+  Hit hit;
+  set_hit(ray, found, hit);
   if (!found.instance) return hit;
   hit.primitive += found.instance->first_primitive + found.geometry->objects[hit.object].first_primitive;
   hit.object = found.instance->object;
   return hit;
+}
+
+void store_hits(const Geometry& geometry, const Ray* rays, std::span<const BvhAnswer> answers, Hit* hits) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (answers[i].part == BvhAnswer::miss)
+      hits[i] = Hit{};
+    else
+      set_hit(rays[i], {&geometry, nullptr, answers[i]}, hits[i]);
+  }
 }
 
 }  // namespace rayengine

@@ -30,7 +30,7 @@ class BvhTracer final : public Tracer {
   HitLists all(std::span<const Ray> rays) override;
 
  private:
-  Hit nearest(const Ray& ray, const BvhAnswer& answer) const;
+  void add_instances(const Ray& ray, Hit& hit) const;
   bool any_instance(const Ray& ray) const;
   std::vector<Hit> all(const Ray& ray) const;
 
@@ -44,10 +44,8 @@ bool comes_first(const Hit& a, const Hit& b) {
   return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
 }
 
-Hit BvhTracer::nearest(const Ray& ray, const BvhAnswer& answer) const {
-  Hit hit;
-  if (answer.part != BvhAnswer::miss) hit = hit_of(ray, {&scene_.geometry(), nullptr, answer});
-  if (instances_.empty()) return hit;
+/// Brings in what is met of instances.
+void BvhTracer::add_instances(const Ray& ray, Hit& hit) const {
   instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, Ray local) {
     local.tmax = std::min(local.tmax, hit.t);
     if (!is_valid(local)) return hit.t;
@@ -58,7 +56,6 @@ Hit BvhTracer::nearest(const Ray& ray, const BvhAnswer& answer) const {
     if (comes_first(other, hit)) hit = other;
     return hit.t;
   });
-  return hit;
 }
 
 bool BvhTracer::any_instance(const Ray& ray) const {
@@ -76,10 +73,12 @@ void BvhTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass
   check_lengths(rays.size(), hits.size());
   for_ranges(rays.size(), [&](std::size_t begin, std::size_t end) {
     const auto mine = rays.subspan(begin, end - begin);
-    std::vector<BvhAnswer> answers(mine.size());
+    BvhAnswer answers[longest_run];
     const auto trace = [&](std::size_t first, std::size_t last) {
-      bvh_queries().closest(scene_.job(), &mine[first], last - first, &answers[first]);
-      for (std::size_t i = first; i < last; ++i) hits[begin + i] = nearest(mine[i], answers[i]);
+      bvh_queries().closest(scene_.job(), &mine[first], last - first, answers);
+      store_hits(scene_.geometry(), &mine[first], std::span(answers, last - first), &hits[begin + first]);
+      if (instances_.empty()) return;
+      for (std::size_t i = begin + first; i < begin + last; ++i) add_instances(rays[i], hits[i]);
     };
     for_runs(mine, is_valid, trace, [&](std::size_t i) { hits[begin + i] = {.status = status_invalid}; });
   });

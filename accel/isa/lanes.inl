@@ -20,10 +20,10 @@ template <class REAL>
 inline constexpr int lane_count = kernels::is_lanes<REAL> ? ISA_BYTES / sizeof(typename kernels::Scalar<REAL>::type)
                                                           : 1;
 
-/// The value in every lane; 0 - (-a) and not 0 + a, which would lose the sign of a zero.
+/// The value in every lane; a - 0 and not 0 + a, which would lose the sign of a zero, and cost an addition.
 template <class REAL>
 INLINE REAL splat(double a) {
-  return REAL{} - static_cast<typename kernels::Scalar<REAL>::type>(-a);
+  return static_cast<typename kernels::Scalar<REAL>::type>(a) - REAL{};
 }
 
 template <class REAL, class T>
@@ -36,6 +36,20 @@ INLINE REAL read(const T* from) {
 template <class REAL, class T>
 INLINE void write(T* to, const REAL& value) {
   __builtin_memcpy(to, &value, sizeof value);
+}
+
+typedef double Four __attribute__((vector_size(32)));
+
+/// Writes four columns of four numbers each as rows.
+INLINE void transpose(const double* column0, const double* column1, const double* column2, const double* column3,
+                      double* row0, double* row1, double* row2, double* row3) {
+  const Four a = read<Four>(column0), b = read<Four>(column1), c = read<Four>(column2), d = read<Four>(column3);
+  const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  write(row0, __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5));
+  write(row1, __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5));
+  write(row2, __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7));
+  write(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
 }
 
 template <class MASK>

@@ -71,11 +71,9 @@ static inline void store(float* to, reals value) {
   __builtin_memcpy(to, &rounded, sizeof rounded);
 }
 
-/// Takes up to `packet` rays to the local frame, from `place` on. Branch-free: what rays do here is not to be
-/// predicted.
-static inline void to_local(const WalkSpace& space, const Ray* rays, std::size_t count, LocalRays& local, int place) {
-  reals column[8];
-  gather(rays, count, column);
+/// Takes `packet` rays, given by their eight numbers, to the local frame, from `place` on. Branch-free: what rays do
+/// here is not to be predicted.
+static inline void to_local(const WalkSpace& space, const reals* column, LocalRays& local, int place) {
   const reals *origin = column, *direction = column + 4, tmin = column[3], tmax = column[7];
   const reals nothing =
       (origin[0] * 0 + origin[1] * 0 + origin[2] * 0) + (direction[0] * 0 + direction[1] * 0 + direction[2] * 0);
@@ -117,4 +115,11 @@ static inline void to_local(const WalkSpace& space, const Ray* rays, std::size_t
   __builtin_memcpy(local.stride + place, &stride, sizeof stride);
   const integers alive = valid & (enter <= leave);
   __builtin_memcpy(local.alive + place, &alive, sizeof alive);
+}
+
+/// The same for up to `packet` rays in rows.
+static inline void to_local(const WalkSpace& space, const Ray* rays, std::size_t count, LocalRays& local, int place) {
+  reals column[8];
+  gather(rays, count, column);
+  to_local(space, column, local, place);
 }

@@ -5,5 +5,8 @@ KERNEL REAL highlight(REAL shininess, VEC3 normal, VEC3 to_light, VEC3 view) {
   REAL along = (normal.x * half_way.x + normal.y * half_way.y) + normal.z * half_way.z;
   REAL size = root((half_way.x * half_way.x + half_way.y * half_way.y) + half_way.z * half_way.z);
   REAL none = 0;
-  return pick(along > 0, power(larger(along / size, none), shininess), none);
+  REAL cosine = larger(along / size, none);
+  // Below e^-32, which no picture shows, it is none: libraries take their time over what underflows. c^s <= e^(-s (1 - c)).
+  cosine = pick(shininess * (1 - cosine) > 32, none, cosine);
+  return pick(along > 0, power(cosine, shininess), none);
 }

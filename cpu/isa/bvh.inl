@@ -5,85 +5,18 @@
 // they would have alone. Source of the idea: Benthin, Wald, Woop, Ernst, "Combining Single and Packet-Ray Tracing for
 // Arbitrary Ray Distributions on the Intel MIC Architecture" (2012).
 
-#include "cpu/isa/bvh_single.inl"
+#include "cpu/isa/bvh_packet.inl"
 
 namespace rayengine::ISA {
 namespace {
 
-constexpr int parts = group / reals_count;
-constexpr unsigned part_bits = (1u << reals_count) - 1;
 constexpr int few = 4;  // rays that are quicker alone
-
-struct PacketState {
-  LocalRays local;
-  State<Reals> part[parts];
-  unsigned hit = 0;  ///< a bit for each ray
-};
 
 /// A node or leaf that waits, and the box it was met by: a lane of its parent.
 struct Waiting {
   std::uint64_t key;
   std::uint32_t parent, lane;
 };
-
-INLINE kernels::Mask<Reals> lanes_with(unsigned bits) {
-  kernels::Mask<Reals> of_lane, all_bits;
-  for (int i = 0; i < reals_count; ++i) of_lane[i] = 1ll << i, all_bits[i] = bits;
-  return (all_bits & of_lane) != 0;
-}
-
-template <Ask ask>
-INLINE void load_packet(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
-  alignas(64) double column[8][group];
-  for (std::size_t k = 0; k < group; ++k) {
-    const auto* row = reinterpret_cast<const double*>(rays + (k < count ? k : 0));
-    for (int i = 0; i < 7; ++i) column[i][k] = row[i];
-    column[7][k] = ask.certain ? row[7] : just_above(row[7]);
-  }
-  for (int i = 0; i < parts; ++i) {
-    State<Reals>& s = p.part[i];
-    const auto at = [&](int c) { return read<Reals>(column[c] + i * reals_count); };
-    s.rays.o = {at(0), at(1), at(2)};
-    s.rays.d = {at(4), at(5), at(6)};
-    s.rays.tmin = at(3), s.rays.nearest = at(7);
-    begin(s);
-    if (ask.certain) begin_certain(job, error, s);
-  }
-}
-
-template <Ask ask>
-INLINE State<double> extract(const State<Reals>& s, int i) {
-  const auto vec = [i](const Vec3<Reals>& v) { return Vec3<double>{v.x[i], v.y[i], v.z[i]}; };
-  const Sheared<Reals>& h = s.sheared;
-  State<double> one{{vec(s.rays.o), vec(s.rays.d), s.rays.tmin[i], s.rays.nearest[i], s.rays.object[i], true},
-                    {h.x_last[i] != 0, h.y_last[i] != 0, vec(h.shear), 0, 0, 0, 0},
-                    s.index[i],
-                    s.part[i],
-                    s.u[i],
-                    s.v[i],
-                    {}};
-  if (!ask.certain) return one;
-  one.sheared.corner_error = h.corner_error[i];
-  one.sheared.widest_error = h.widest_error[i];
-  one.sheared.depth_error = h.depth_error[i];
-  one.sheared.per_length = h.per_length[i];
-  const Certainty<Reals>& c = s.certainty;
-  one.certainty = {c.t[i], c.low[i], c.rival[i], c.o_extra[i], c.d_size[i]};
-  return one;
-}
-
-template <Ask ask>
-INLINE void put_back(const State<double>& from, State<Reals>& s, int i) {
-  s.rays.nearest[i] = from.rays.nearest;
-  s.rays.object[i] = from.rays.object;
-  s.index[i] = from.index, s.part[i] = from.part, s.u[i] = from.u, s.v[i] = from.v;
-  if (!ask.certain) return;
-  const Certainty<double>& c = from.certainty;
-  s.certainty.t[i] = c.t, s.certainty.low[i] = c.low, s.certainty.rival[i] = c.rival;
-}
-
-/// A ray that needs no more: no box reaches it.
-INLINE void end_ray(PacketState& p, int k) { p.local.length[k] = -1; }
 
 template <Ask ask>
 INLINE void trace_lane(const BvhJob& job, PacketState& p, int k, std::uint32_t child) {
@@ -174,31 +107,23 @@ INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
   }
 }
 
-INLINE void load_local(const BvhJob& job, const Ray* rays, std::size_t count, LocalRays& local) {
-  for (int place = 0; place < group; place += packet) {
-    const std::size_t first = static_cast<std::size_t>(place) < count ? place : count - 1;
-    to_local(job, rays + first, count - first, local, place);
-  }
-}
-
-/// Leaves alive, of the first `count` rays of a group, those that reach the tree and are not done; a bit for each.
-INLINE unsigned keep_alive(LocalRays& local, std::size_t count, unsigned done) {
-  unsigned alive = 0;
-  for (int k = 0; k < group; ++k) {
-    local.alive[k] = static_cast<std::size_t>(k) < count && local.alive[k] && !(done >> k & 1);
-    alive |= static_cast<unsigned>(local.alive[k]) << k;
-  }
-  return alive;
-}
-
+/// Whether there was anything to meet; where not, nothing but `hit` is set.
 template <Ask ask>
-INLINE void trace_group(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
+INLINE bool trace_group(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
+  Columns columns;
+  load_columns(rays, count, columns);
   p.hit = 0;
-  load_packet<ask>(job, rays, count, error, p);
+  unsigned alive = 0;
+  if (job.nodes) {
+    load_local(job, columns, p.local);
+    alive = living(p.local, count);
+  }
+  if (!alive && !job.unbounded) return false;
+  load_packet<ask>(job, columns, error, p);
   if (job.unbounded) test_leaf_together<ask>(job, *job.unbounded, p, (1u << count) - 1);
-  if (!job.nodes) return;
-  load_local(job, rays, count, p.local);
-  const unsigned alive = keep_alive(p.local, count, ask.any ? p.hit : 0);
+  if (ask.any) alive &= ~p.hit;
+  if (!alive) return true;
+  keep_alive(p.local, alive);
   Tube tube;
   const bool together = enclose(p.local, tube);  // gives places without a living ray the numbers of one
   for (int k = 0; k < group; ++k)
@@ -208,11 +133,14 @@ INLINE void trace_group(const BvhJob& job, const Ray* rays, std::size_t count, c
     trace_tube<ask>(job, p, tube);
   else
     trace_lanes<ask>(job, p, alive, 0);
+  return true;
 }
 
 INLINE std::size_t group_size(std::size_t left) { return left < group ? left : group; }
 
 constexpr Ask nearest_hit{false, false}, any_hit{true, false}, certain_nearest{false, true}, certain_any{true, true};
+
+constexpr BvhAnswer no_answer{std::numeric_limits<double>::infinity(), 0, 0, BvhAnswer::miss, 0, 0};
 
 INLINE BvhAnswer answer_of(const State<Reals>& s, std::size_t i) {
   return {s.rays.nearest[i],
@@ -241,10 +169,13 @@ INLINE void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, 
                          BvhAnswer* answers) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
-    trace_group<ask>(job, rays + first, group_size(count - first), error, p);
-    for (std::size_t k = 0; k < group_size(count - first); ++k) {
+    const std::size_t rays_here = group_size(count - first);
+    const bool met = trace_group<ask>(job, rays + first, rays_here, error, p);
+    for (std::size_t k = 0; k < rays_here; ++k) {
       const State<Reals>& s = p.part[k / reals_count];
-      answers[first + k] = ask.certain ? certain_answer_of(s, k % reals_count) : answer_of(s, k % reals_count);
+      answers[first + k] = !met          ? no_answer
+                           : ask.certain ? certain_answer_of(s, k % reals_count)
+                                         : answer_of(s, k % reals_count);
     }
   }
 }
@@ -254,11 +185,13 @@ INLINE void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, cons
                      std::uint32_t* status) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
-    trace_group<ask>(job, rays + first, group_size(count - first), error, p);
-    for (std::size_t k = 0; k < group_size(count - first); ++k) {
+    const std::size_t rays_here = group_size(count - first);
+    const bool met = trace_group<ask>(job, rays + first, rays_here, error, p);
+    for (std::size_t k = 0; k < rays_here; ++k) {
       const bool hit = p.hit >> k & 1;
       status[first + k] = hit ? status_hit : status_miss;
-      if (ask.certain && !hit && is_unsure(p.part[k / reals_count], k % reals_count)) status[first + k] = status_unsure;
+      if (ask.certain && met && !hit && is_unsure(p.part[k / reals_count], k % reals_count))
+        status[first + k] = status_unsure;
     }
   }
 }

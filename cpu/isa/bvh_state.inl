@@ -106,13 +106,13 @@ INLINE unsigned admit(State<REAL>& s, REAL t, REAL error, const kernels::Mask<RE
 }
 
 /// The next double above t; infinity stays.
-INLINE double just_above(double t) {
-  long long bits;
-  __builtin_memcpy(&bits, &t, sizeof t);
-  bits = t > 0 ? bits + 1 : t == 0 ? 1 : bits - 1;
-  double above;
-  __builtin_memcpy(&above, &bits, sizeof above);
-  return t < __builtin_inf() ? above : t;
+template <class REAL>
+INLINE REAL just_above(REAL t) {
+  using Bits = std::conditional_t<kernels::is_lanes<REAL>, kernels::Mask<REAL>, long long>;
+  const Bits bits = read<Bits>(&t), one = Bits{} + 1;
+  const Bits beyond_zero = t > 0 ? bits + one : bits - one;
+  const Bits above = t == 0 ? one : beyond_zero;
+  return t < __builtin_inf() ? read<REAL>(&above) : t;
 }
 
 template <int kind, class REAL>
@@ -247,10 +247,15 @@ INLINE void take_crossing(State<REAL>& s, const Crossing<REAL>& x, const kernels
   s.v = kernels::pick(nearer, x.v, s.v);
 }
 
+/// Among triangles indices say all, and what would be fetched from anywhere in memory is not.
+INLINE std::uint32_t object_beside_quadrics(const Geometry& geometry, std::uint32_t triangle) {
+  return geometry.quadrics.empty() ? 0 : geometry.triangle_object.data()[triangle];
+}
+
 /// Brings in a crossing with triangle `index`; the lanes that were hit nearer than before.
 template <Ask ask, class REAL>
 INLINE unsigned take(const BvhJob& job, State<REAL>& s, const Crossing<REAL>& x, std::uint32_t index) {
-  const REAL object = splat<REAL>(job.geometry->triangle_object.data()[index]), id = splat<REAL>(index);
+  const REAL object = splat<REAL>(object_beside_quadrics(*job.geometry, index)), id = splat<REAL>(index);
   if constexpr (ask.certain)
     return admit<ask>(s, x.t, x.error, x.hit, x.certain, object, id, splat<REAL>(BvhAnswer::triangle), x.u, x.v);
   const auto nearer = comes_first(s, x, object, id);

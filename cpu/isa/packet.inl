@@ -12,18 +12,6 @@ using Doubles = Lanes<double>;
 constexpr int width = lane_count<Doubles>;
 typedef float Floats __attribute__((vector_size(ISA_BYTES / 2)));
 typedef int Ints __attribute__((vector_size(ISA_BYTES / 2)));
-typedef double Four __attribute__((vector_size(32)));
-
-/// Writes four fields of four rays, which lie 8 doubles apart, as four rows of four.
-INLINE void transpose(const double* rays, double* row0, double* row1, double* row2, double* row3) {
-  const Four a = read<Four>(rays), b = read<Four>(rays + 8), c = read<Four>(rays + 16), d = read<Four>(rays + 24);
-  const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  write(row0, __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5));
-  write(row1, __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5));
-  write(row2, __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7));
-  write(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
-}
 
 INLINE Doubles absolute_sum(const double* x, const double* y, const double* z) {
   return (kernels::magnitude(read<Doubles>(x)) + kernels::magnitude(read<Doubles>(y))) +
@@ -87,8 +75,8 @@ INLINE void begin(QuadricContext& c, const double* tmax, int lanes) {
 INLINE bool load_rows(const OrdinaryRays& ordinary, const Ray* rays, int lanes, const RayRows& r, float* numbers) {
   for (int i = 0; i < lanes; i += 4) {
     const auto* ray = reinterpret_cast<const double*>(rays + i);
-    transpose(ray, r.ox + i, r.oy + i, r.oz + i, r.tmin + i);
-    transpose(ray + 4, r.dx + i, r.dy + i, r.dz + i, r.tmax + i);
+    transpose(ray, ray + 8, ray + 16, ray + 24, r.ox + i, r.oy + i, r.oz + i, r.tmin + i);
+    transpose(ray + 4, ray + 12, ray + 20, ray + 28, r.dx + i, r.dy + i, r.dz + i, r.tmax + i);
   }
   if (!all_ordinary(ordinary, r, lanes)) return false;
   float *const origin = numbers + org_x_row * lanes, *const direction = numbers + dir_x_row * lanes;
