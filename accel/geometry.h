@@ -53,6 +53,7 @@ struct Geometry {
 
   std::vector<Object> objects;
   std::vector<Box> mesh_bounds;       ///< of each mesh object, in their order
+  Box quadric_bounds;                 ///< of all quadrics
   Box bounds;                         ///< of everything, instances included
   std::uint32_t primitive_count = 0;  ///< of everything, instances included
 
@@ -117,11 +118,12 @@ class GeometryBuilder {
   void copy_instances(const Geometry& from, std::uint32_t object, std::uint32_t copy);
   void place(const glm::dvec3& vertex);
   void place(std::span<const glm::uvec3> triangles, std::uint32_t base, std::uint32_t object);
+  void place(const Quadric& quadric);
   void place(const Instance& instance);
   std::uint32_t group_index(const std::shared_ptr<const Geometry>& group);
 
   Geometry geometry_;
-  bool exact_ = true;
+  bool single_ = true;  // whether single precision holds all vertices
 };
 
 }  // namespace rayengine

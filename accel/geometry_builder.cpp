@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -9,6 +10,15 @@
 
 namespace rayengine {
 namespace {
+
+constexpr std::size_t after_vertices = 1;  // Embree reads 16 bytes at the last one
+
+/// For so many more: no more than that where they are the first, since most scenes hold one mesh.
+template <class T>
+void make_room(std::vector<T>& list, std::size_t more) {
+  if (const std::size_t needed = list.size() + more; needed > list.capacity())
+    list.reserve(std::max(needed, list.size() + list.size() / 2));
+}
 
 bool is_float(const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)) == p; }
 
@@ -70,6 +80,7 @@ std::uint32_t GeometryBuilder::add(const Mesh& mesh, std::uint32_t material, con
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
   const std::uint32_t object = begin(Object::Kind::mesh, geometry_.triangles.size(), material);
   geometry_.mesh_bounds.emplace_back();
+  make_room(geometry_.vertices, mesh.positions.size() + after_vertices);
   for (const glm::dvec3& p : mesh.positions) place(to_world.point(p));
   geometry_.bounds.add(geometry_.mesh_bounds.back());
   if (!mesh.normals.empty()) {
@@ -96,8 +107,7 @@ std::uint32_t GeometryBuilder::add(const QuadricShape& shape, std::uint32_t mate
     geometry_.forms.push_back(form);
   }
   q.object = begin(Object::Kind::quadric, geometry_.quadrics.size(), material);
-  geometry_.quadrics.push_back(q);
-  geometry_.bounds.add(bounds(geometry_, q));
+  place(q);
   geometry_.primitive_count += primitive_count(q);
   return q.object;
 }
@@ -110,15 +120,27 @@ std::uint32_t GeometryBuilder::group_index(const std::shared_ptr<const Geometry>
 }
 
 void GeometryBuilder::place(const glm::dvec3& vertex) {
-  exact_ = exact_ && is_float(vertex);
+  if (single_ && !is_float(vertex)) {
+    single_ = false;
+    geometry_.exact_vertices.assign(geometry_.vertices.begin(), geometry_.vertices.end());
+  }
   geometry_.vertices.emplace_back(vertex);
-  geometry_.exact_vertices.push_back(vertex);
+  if (!single_) geometry_.exact_vertices.push_back(vertex);
   geometry_.mesh_bounds.back().add(vertex);
 }
 
 void GeometryBuilder::place(std::span<const glm::uvec3> triangles, std::uint32_t base, std::uint32_t object) {
+  make_room(geometry_.triangles, triangles.size());
+  make_room(geometry_.triangle_object, triangles.size());
   for (const glm::uvec3& t : triangles) geometry_.triangles.push_back(t + base);
   geometry_.triangle_object.resize(geometry_.triangles.size(), object);
+}
+
+void GeometryBuilder::place(const Quadric& quadric) {
+  const Box box = bounds(geometry_, quadric);
+  geometry_.quadric_bounds.add(box);
+  geometry_.bounds.add(box);
+  geometry_.quadrics.push_back(quadric);
 }
 
 void GeometryBuilder::place(const Instance& instance) {
@@ -130,11 +152,11 @@ std::uint32_t GeometryBuilder::add(std::shared_ptr<const Geometry> group, const 
                                    std::uint32_t material) {
   const WorldToObject to_group = inverse(to_world);
   const std::uint32_t object = begin(Object::Kind::instance, geometry_.instances.size(), material);
-  place({to_group, group_index(group), object, 0});
+  place(Instance{to_group, group_index(group), object, 0});
   for (const Instance& inner : group->instances) {
     const Affine nested = to_world * object_to_world(inner.to_group);
-    place({inverse(nested), group_index(group->groups[inner.group]), object,
-           group->objects[inner.object].first_primitive + inner.first_primitive});
+    place(Instance{inverse(nested), group_index(group->groups[inner.group]), object,
+                   group->objects[inner.object].first_primitive + inner.first_primitive});
   }
   geometry_.primitive_count += group->primitive_count;
   return object;
@@ -156,6 +178,7 @@ std::uint32_t GeometryBuilder::add(const Geometry& from, std::uint32_t object) {
 void GeometryBuilder::copy_mesh(const Mesh& mesh, std::uint32_t copy) {
   const auto base = static_cast<std::uint32_t>(geometry_.vertices.size());
   geometry_.mesh_bounds.emplace_back();
+  make_room(geometry_.vertices, mesh.positions.size() + after_vertices);
   for (const glm::dvec3& p : mesh.positions) place(p);
   geometry_.bounds.add(geometry_.mesh_bounds.back());
   if (!mesh.normals.empty()) {
@@ -172,8 +195,7 @@ void GeometryBuilder::copy_quadric(const Geometry& from, const Object& object, s
     geometry_.forms.push_back(from.forms[q.form]);
     q.form = static_cast<std::uint32_t>(geometry_.forms.size() - 1);
   }
-  geometry_.quadrics.push_back(q);
-  geometry_.bounds.add(bounds(geometry_, q));
+  place(q);
 }
 
 void GeometryBuilder::copy_instances(const Geometry& from, std::uint32_t object, std::uint32_t copy) {
@@ -187,9 +209,8 @@ void GeometryBuilder::copy_instances(const Geometry& from, std::uint32_t object,
 }
 
 std::shared_ptr<const Geometry> GeometryBuilder::build() {
-  if (exact_) geometry_.exact_vertices = {};
   if (!geometry_.normals.empty()) geometry_.normals.resize(geometry_.vertices.size());
-  geometry_.vertices.reserve(geometry_.vertices.size() + 1);  // Embree reads 16 bytes at the last vertex
+  geometry_.vertices.reserve(geometry_.vertices.size() + after_vertices);
   auto result = std::make_shared<const Geometry>(std::move(geometry_));
   *this = {};
   return result;

@@ -78,5 +78,21 @@ TEST(CopiedObjects, MeshesAreFoundAgainAsGiven) {
   EXPECT_EQ(found.triangles, given.triangles);
 }
 
+/// Doubles are held from the first vertex on that single precision cannot tell; those before it are told by it.
+TEST(GeometryBuilder, KeepsDoublesAfterVerticesThatNeedNone) {
+  const glm::dvec3 third(1.0 / 3, 0, 0);
+  Mesh single{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}}, exact = single;
+  exact.positions[1] = third;
+  GeometryBuilder builder;
+  builder.add(single);
+  EXPECT_TRUE(builder.build()->exact_vertices.empty());
+  for (const Mesh& mesh : {single, exact, single}) builder.add(mesh);
+  const auto geometry = builder.build();
+  ASSERT_EQ(geometry->exact_vertices.size(), 9u);
+  EXPECT_EQ(geometry->vertex(1), single.positions[1]);
+  EXPECT_EQ(geometry->vertex(4), third);
+  EXPECT_EQ(geometry->vertex(8), single.positions[2]);
+}
+
 }  // namespace
 }  // namespace rayengine
