@@ -68,6 +68,17 @@ double expect_right(Rig& rig, std::size_t count) {
   return seconds;
 }
 
+/// A GPU that was slow in its trial, on a busy machine, gets its next batch only in the next trial.
+bool still_to_fail(const Rig& rig, const Fault& fault, int queries) {
+  constexpr int most = 400;
+  return rig.gpu.load()->batches() <= fault.batch && queries < most;
+}
+
+/// A few queries, and as many more as it takes until the GPU had the batch that fails.
+void expect_right_until_it_fails(Rig& rig, const Fault& fault) {
+  for (int query = 0; query < 3 || still_to_fail(rig, fault, query); ++query) expect_right(rig, 75'000);
+}
+
 TEST(Hybrid, SharesRaysAndAnswersThemLikeOneTracer) {
   Rig rig;
   expect_right(rig, 100'000);
@@ -188,8 +199,9 @@ TEST(HybridFault, ASlowDownByAHundredCostsLittle) {
 
 TEST(HybridFault, AnErrorInABatchGivesItsRaysBack) {
   for (const int batch : {0, 1, 4}) {
-    Rig rig({Fault::Kind::error, batch});
-    for (int i = 0; i < 3; ++i) expect_right(rig, 75'000);
+    const Fault fault{Fault::Kind::error, batch};
+    Rig rig(fault);
+    expect_right_until_it_fails(rig, fault);
     ASSERT_EQ(rig.said.size(), 1u);
     EXPECT_NE(rig.said[0].find("a made error"), std::string::npos);
     EXPECT_NE(rig.hybrid->report().why.find("failed"), std::string::npos);
@@ -197,8 +209,9 @@ TEST(HybridFault, AnErrorInABatchGivesItsRaysBack) {
 }
 
 TEST(HybridFault, ALostContextLosesNothing) {
-  Rig rig({Fault::Kind::lost, 2});
-  for (int i = 0; i < 3; ++i) expect_right(rig, 75'000);
+  const Fault fault{Fault::Kind::lost, 2};
+  Rig rig(fault);
+  expect_right_until_it_fails(rig, fault);
   ASSERT_EQ(rig.said.size(), 1u);
   EXPECT_NE(rig.said[0].find("context is lost"), std::string::npos);
 }
@@ -206,11 +219,12 @@ TEST(HybridFault, ALostContextLosesNothing) {
 TEST(HybridFault, AGpuThatIsKilledMeanwhileLosesNothing) {
   Rig rig({}, 5e-3);
   std::jthread killer([&] {
-    while (rig.gpu.load()->batches() < 4) std::this_thread::yield();
+    while (still_to_fail(rig, {.batch = 1}, 0)) std::this_thread::yield();
     rig.hybrid->lose_gpu();
   });
-  for (int i = 0; i < 4; ++i) expect_right(rig, 75'000);
+  expect_right_until_it_fails(rig, {.batch = 1});
   killer.join();
+  expect_right(rig, 75'000);
   EXPECT_EQ(rig.said.size(), 1u);
 }
 
@@ -227,7 +241,7 @@ TEST(HybridFault, ManyCallersGetTheirAnswers) {
     std::vector<std::jthread> callers;
     for (int c = 0; c < 4; ++c)
       callers.emplace_back([&] {
-        for (int query = 0; query < 40; ++query) {
+        for (int query = 0; query < 40 || still_to_fail(rig, fault, query); ++query) {
           std::vector<Hit> hits(count);
           rig.hybrid->closest(rays, hits, RayClass::bounce);
           for (std::size_t i = 0; i < count; ++i) wrong += !same(hits[i], right[i]);
@@ -302,9 +316,9 @@ TEST(RenderInvarianceHybrid, FaultsOfTheGpuLeavePicturesAsTheyAre) {
     return pixels;
   };
   const std::vector<float> right = picture({});
-  // Of the three batches of the trial: whether others follow is the machine's to say.
-  for (const Fault& fault : {Fault{Fault::Kind::stall, 2, 1.0}, Fault{Fault::Kind::slow, 2},
-                             Fault{Fault::Kind::error, 2}, Fault{Fault::Kind::lost, 0}})
+  // Of the first batches of the trial: whether others follow is the machine's to say.
+  for (const Fault& fault : {Fault{Fault::Kind::stall, 1, 1.0}, Fault{Fault::Kind::slow, 1},
+                             Fault{Fault::Kind::error, 1}, Fault{Fault::Kind::lost, 0}})
     EXPECT_EQ(picture(fault), right) << static_cast<int>(fault.kind);
 }
 
