@@ -118,6 +118,15 @@ void add_traits(TraitsByType& traits, std::span<const Quadric> quadrics) {
   }
 }
 
+void add_traits(TraitsByType& traits, const TraitsByType& others) {
+  for (std::size_t i = 0; i < traits.size(); ++i) {
+    traits[i].any |= others[i].any;
+    traits[i].clipped |= others[i].clipped;
+    traits[i].capped |= others[i].capped;
+    traits[i].balls &= others[i].balls;
+  }
+}
+
 Box bounds(const Quadric& q, const GeneralForm* form) {
   if (is_ball(q)) return ball_bounds(q);
   const Affine map = object_to_world(q.to_object);

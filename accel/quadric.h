@@ -78,6 +78,7 @@ using TraitsByType = std::array<QuadricTraits, quadric_type_count>;
 
 /// Adds what these need to what others do.
 void add_traits(TraitsByType& traits, std::span<const Quadric> quadrics);
+void add_traits(TraitsByType& traits, const TraitsByType& others);
 
 /// World-space bounds of the clipped surface; infinite where it is. `form` is needed for `general` alone.
 Box bounds(const Quadric& quadric, const GeneralForm* form);

@@ -22,6 +22,9 @@ enum class Precision {
 std::string_view to_string(Precision precision);
 std::optional<Precision> parse_precision(std::string_view name);
 
+/// What the making of an acceleration structure may take: time that its rays save again, if they are many.
+enum class Build { thorough, quick };
+
 /// What a caller must know to feed a tracer well.
 struct Limits {
   bool concurrent = true;         ///< queries may come from several threads at once

@@ -61,13 +61,6 @@ void set_transform(RTCGeometry instance, const Affine& map) {
   rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
 }
 
-unsigned attach(RTCScene scene, RTCGeometry geometry) {
-  rtcCommitGeometry(geometry);
-  const unsigned id = rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  return id;
-}
-
 bool count_bytes(void* total, ssize_t bytes, bool) {
   static_cast<std::atomic<std::ptrdiff_t>*>(total)->fetch_add(bytes);
   return true;
@@ -75,9 +68,10 @@ bool count_bytes(void* total, ssize_t bytes, bool) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, bool calls_filters)
+EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, Build how, bool calls_filters)
     : geometry_(std::move(geometry)),
       precision_(precision),
+      build_(how),
       calls_filters_(calls_filters),
       finite_bounds_(finite_part(*geometry_)) {
   if (!finite_bounds_.empty() && !(finite_bounds_.extent() < EmbreeScene::range))
@@ -128,6 +122,7 @@ std::size_t EmbreeScene::bytes() const {
 void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) {
   level.geometry = &geometry;
   level.scene = rtcNewScene(device_);
+  if (build_ == Build::quick) rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_LOW);
   const int robust = precision_ == Precision::fast ? 0 : RTC_SCENE_FLAG_ROBUST;
   const int filters = calls_filters_ ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0;
   rtcSetSceneFlags(level.scene, static_cast<RTCSceneFlags>(robust | filters));
@@ -137,13 +132,21 @@ void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) 
   rtcCommitScene(level.scene);
 }
 
+unsigned EmbreeScene::attach(const Level& level, RTCGeometry geometry) const {
+  if (build_ == Build::quick) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+  rtcCommitGeometry(geometry);
+  const unsigned id = rtcAttachGeometry(level.scene, geometry);
+  rtcReleaseGeometry(geometry);
+  return id;
+}
+
 void EmbreeScene::attach_instances() {
   for (const Instance& i : geometry_->instances) {
     RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, groups_[i.group].scene);
     rtcSetGeometryTimeStepCount(instance, 1);
     set_transform(instance, object_to_world(i.to_group));
-    attach(top_.scene, instance);
+    attach(top_, instance);
   }
 }
 
@@ -155,7 +158,7 @@ void EmbreeScene::attach_triangles(Level& level) {
                              sizeof(glm::vec3), g.vertices.size());
   rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, g.triangles.data(), 0,
                              sizeof(glm::uvec3), g.triangles.size());
-  level.triangles_id = attach(level.scene, mesh);
+  level.triangles_id = attach(level, mesh);
   // Objects come in order, so that equal ends mean one object.
   if (g.triangle_object.front() == g.triangle_object.back()) level.only_mesh = g.triangle_object.front();
 }
@@ -179,7 +182,7 @@ void EmbreeScene::attach_quadrics(Level& level, double padding) {
     rtcSetGeometryBoundsFunction(user, quadric_bounds, nullptr);
     rtcSetGeometryIntersectFunction(user, callbacks.intersect[kind]);
     rtcSetGeometryOccludedFunction(user, callbacks.occluded[kind]);
-    attach(level.scene, user);
+    attach(level, user);
   }
 }
 

@@ -19,7 +19,7 @@ class EmbreeScene {
 
   /// Throws Error when Embree fails, or when the geometry's finite parts lie beyond the range of its single precision.
   /// All-hits queries need a scene that calls filters; other queries would pay for that at every hit.
-  EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, bool calls_filters = false);
+  EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision precision, Build how, bool calls_filters = false);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -57,12 +57,14 @@ class EmbreeScene {
 
  private:
   void build(Level& level, const Geometry& geometry, double padding);
+  unsigned attach(const Level& level, RTCGeometry geometry) const;
   void attach_instances();
   void attach_triangles(Level& level);
   void attach_quadrics(Level& level, double padding);
 
   std::shared_ptr<const Geometry> geometry_;
   Precision precision_;
+  Build build_;
   bool calls_filters_;
   RTCDevice device_ = nullptr;
   Level top_;

@@ -16,10 +16,11 @@ namespace {
 
 class EmbreeTracer final : public Tracer {
  public:
-  EmbreeTracer(std::shared_ptr<const Geometry> geometry, Precision precision)
+  EmbreeTracer(std::shared_ptr<const Geometry> geometry, Precision precision, Build build)
       : precision_(precision),
+        build_(build),
         geometry_(std::move(geometry)),
-        scene_(geometry_, precision),
+        scene_(geometry_, precision, build),
         loader_(scene_, precision),
         maker_(scene_) {}
 
@@ -49,6 +50,7 @@ class EmbreeTracer final : public Tracer {
   std::vector<Hit> all(const Ray& ray) const;
 
   Precision precision_;
+  Build build_;
   std::shared_ptr<const Geometry> geometry_;
   EmbreeScene scene_;
   std::unique_ptr<EmbreeScene> filtering_;  ///< the same with the same ids, made by the first all-hits query
@@ -57,7 +59,6 @@ class EmbreeTracer final : public Tracer {
   EmbreeHits maker_;
   const PacketCode& code_ = packet_code(best_isa());
   bool only_one_mesh_ = maker_.only_one_mesh();
-  std::uint32_t only_mesh_ = scene_.level(RTC_INVALID_GEOMETRY_ID).only_mesh;
   /// Tests of triangles are so cheap that shadow rays gain from packets even where they part.
   bool mostly_triangles_ = geometry_->triangles.size() > geometry_->quadrics.size();
 };
@@ -107,12 +108,13 @@ void EmbreeTracer::finish(const Ray& ray, const Packet& p, int lane, Hit& hit) c
 }
 
 void EmbreeTracer::store(std::span<const Ray> rays, const Packet& p, Hit* hits) const {
+  const std::uint32_t only_mesh = scene_.level(RTC_INVALID_GEOMETRY_ID).only_mesh;
   if (rays.size() < static_cast<std::size_t>(p.lanes)) {
     Hit all[packet_size];
-    code_.store(p.numbers, p.lanes, only_mesh_, all);
+    code_.store(p.numbers, p.lanes, only_mesh, all);
     std::copy_n(all, rays.size(), hits);
   } else {
-    code_.store(p.numbers, p.lanes, only_mesh_, hits);
+    code_.store(p.numbers, p.lanes, only_mesh, hits);
   }
   if (only_one_mesh_ && !p.odd) return;
   for (std::size_t i = 0; i < rays.size(); ++i) finish(rays[i], p, static_cast<int>(i), hits[i]);
@@ -209,16 +211,17 @@ std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
 }
 
 HitLists EmbreeTracer::all(std::span<const Ray> rays) {
-  std::call_once(filtering_once_, [&] { filtering_ = std::make_unique<EmbreeScene>(geometry_, precision_, true); });
+  std::call_once(filtering_once_,
+                 [&] { filtering_ = std::make_unique<EmbreeScene>(geometry_, precision_, build_, true); });
   return all_lists(rays.size(), [&](std::size_t i) { return all(rays[i]); });
 }
 
 }  // namespace
 
-std::unique_ptr<Tracer> make_embree_tracer(std::shared_ptr<const Geometry> geometry, Precision precision) {
+std::unique_ptr<Tracer> make_embree_tracer(std::shared_ptr<const Geometry> geometry, Precision precision, Build build) {
   if (precision != Precision::fast && precision != Precision::robust)
     throw Error("the embree tracer holds the precisions fast and robust, not " + std::string(to_string(precision)));
-  return std::make_unique<EmbreeTracer>(std::move(geometry), precision);
+  return std::make_unique<EmbreeTracer>(std::move(geometry), precision, build);
 }
 
 }  // namespace rayengine

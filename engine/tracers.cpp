@@ -21,7 +21,7 @@ namespace {
 using Maker = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>, const TracerOptions&);
 
 std::unique_ptr<Tracer> make_embree(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
-  return make_embree_tracer(std::move(geometry), options.precision);
+  return make_embree_tracer(std::move(geometry), options.precision, options.build);
 }
 
 std::unique_ptr<Tracer> make_bvh(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {

@@ -17,6 +17,7 @@ struct TracerOptions {
   int gpu = -1;     ///< an EGL device by its number; the best when negative
   /// Told, in one line each and from any thread, what became of the GPU where a tracer can do without.
   std::function<void(const std::string&)> say;
+  Build build = Build::thorough;  ///< of embree's structure; the others' are built in one way
 };
 
 /// Names of all tracers, and one line on each for --help.

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int runs = 9;  // after one to warm up
 
-PictureCost picture(const Scene& scene, const std::string& name, Precision precision, int threads) {
-  const auto tracer = make_tracer(name, scene.geometry, {precision, threads});
-  const RenderResult result = render(scene, *tracer, {.threads = threads});
+PictureCost picture(const Scene& scene, const std::string& name, const TracerOptions& options) {
+  const auto tracer = make_tracer(name, scene.geometry, options);
+  const RenderResult result = render(scene, *tracer, {.threads = options.threads});
   return {0, tracer->build_seconds(), result.stats.seconds, scene.geometry->bytes() + tracer->bytes()};
 }
 
@@ -37,9 +37,11 @@ PlanBench bench_plan(const Scene& scene, const PlanOptions& options, int threads
   std::vector<PictureCost> without, with;
   PlanBench result;
   for (int run = 0; run <= runs; ++run) {
-    const PictureCost plain = picture(scene, "auto", Precision::robust, threads);
+    const PictureCost plain = picture(scene, "auto", {.threads = threads});
     const Planned planned = plan_scene(scene, options);
-    PictureCost cost = picture(planned.model.scene, planned.tracing.tracer, planned.tracing.precision, threads);
+    const TracingPlan& tracing = planned.tracing;
+    PictureCost cost = picture(planned.model.scene, tracing.tracer,
+                               {.precision = tracing.precision, .threads = threads, .build = tracing.build});
     cost.planning = planned.seconds;
     result.replaced = planned.model.replaced.size();
     if (run > 0) without.push_back(plain), with.push_back(cost);

@@ -121,15 +121,15 @@ std::optional<CanonicalQuadric> as_type(QuadricType type, const Quadric& general
 double allowed(const Scene& scene, const Quadric& q, const Tolerance& tolerance) {
   ObjectStatistics o;
   o.distance = std::sqrt(bounds(q, nullptr).squared_distance(scene.camera.from));
-  return model_share * allowance(tolerance, o, pixel_angle(scene.camera));
+  return (1 - arithmetic_share) * allowance(tolerance, o, pixel_angle(scene.camera));
 }
 
-Box bounds_of_all(const Geometry& g) {
-  Box box;
-  for (const Box& mesh : g.mesh_bounds) box.add(mesh);
-  for (const Quadric& q : g.quadrics) box.add(bounds(g, q));
-  for (const Instance& i : g.instances) box.add(bounds(g, i));
-  return box;
+void bound_again(Geometry& g) {
+  g.bounds = g.quadric_bounds = {};
+  for (const Quadric& q : g.quadrics) g.quadric_bounds.add(bounds(g, q));
+  g.bounds.add(g.quadric_bounds);
+  for (const Box& mesh : g.mesh_bounds) g.bounds.add(mesh);
+  for (const Instance& i : g.instances) g.bounds.add(bounds(g, i));
 }
 
 Choice choice_of(QuadricType type, std::size_t count, double distance) {
@@ -173,7 +173,7 @@ CanonicalScene in_canonical_forms(const Scene& scene, const Tolerance& tolerance
   }
   CanonicalScene result{scene, {}};
   if (!made) return result;
-  made->bounds = bounds_of_all(*made);
+  bound_again(*made);
   result.scene.geometry = std::move(made);
   for (std::size_t t = 0; t < counts.size(); ++t)
     if (counts[t] > 0) result.choices.push_back(choice_of(static_cast<QuadricType>(t), counts[t], distances[t]));

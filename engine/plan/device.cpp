@@ -1,5 +1,6 @@
 #include "engine/plan/device.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -8,7 +9,8 @@
 namespace rayengine {
 namespace {
 
-constexpr const char* heading = "rayengine-device-1";
+constexpr std::array build_names{"thorough", "quick"};
+constexpr const char* heading = "rayengine-device-2";
 
 std::array<double*, 14> numbers(TracerCost& c) {
   return {&c.triangle_roundoff,    &c.quadric_roundoff,     &c.triangle.build,        &c.triangle.bytes,
@@ -29,24 +31,27 @@ double read_number(std::istream& text) {
 
 TracerCost read_tracer(std::istream& text, const std::string& name) {
   TracerCost cost;
-  std::string precision;
-  text >> precision;
+  std::string precision, build;
+  text >> precision >> build;
   cost.tracer = name;
   const auto parsed = parse_precision(precision);
-  if (!parsed) refuse();
+  if (!parsed || std::ranges::find(build_names, build) == build_names.end()) refuse();
   cost.precision = *parsed;
+  cost.build = build == build_names[0] ? Build::thorough : Build::quick;
   for (double* number : numbers(cost)) *number = read_number(text);
   return cost;
 }
 
 }  // namespace
 
+std::string_view to_string(Build build) { return build_names[build == Build::quick]; }
+
 std::string to_text(const DeviceMeasurements& device) {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
   text << heading << '\n' << device.recognise_whole << ' ' << device.recognise_parts << ' ' << device.simplify << '\n';
   for (TracerCost cost : device.tracers) {
-    text << cost.tracer << ' ' << to_string(cost.precision);
+    text << cost.tracer << ' ' << to_string(cost.precision) << ' ' << to_string(cost.build);
     for (const double* number : numbers(cost)) text << ' ' << *number;
     text << '\n';
   }

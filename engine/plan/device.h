@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -19,9 +20,12 @@ struct PrimitiveCost {
 struct TracerCost {
   std::string tracer;
   Precision precision = Precision::robust;
+  Build build = Build::thorough;
   double triangle_roundoff = 0, quadric_roundoff = 0;  ///< as in Limits
   PrimitiveCost triangle, quadric;
 };
+
+std::string_view to_string(Build build);
 
 /// What was measured of a machine, for plans to choose by.
 struct DeviceMeasurements {

@@ -38,8 +38,12 @@ class ModelBuilder {
   Model run() {
     if (!may_change()) return {scene_, {}};
     if (plan_.find_repeats) find_repeated();
-    for (object_ = 0; object_ < geometry_.objects.size(); ++object_)
+    auto next = plan_.objects.begin();
+    for (object_ = 0; object_ < geometry_.objects.size(); ++object_) {
+      const bool planned = next != plan_.objects.end() && next->object == object_;
+      how_ = planned ? *next++ : ObjectPlan{object_};
       if (!replace() && !instanced()) keep();
+    }
     Model model{scene_, std::move(replaced_)};
     if (model.replaced.empty()) return model;
     model.scene.geometry = builder_.build();
@@ -49,7 +53,7 @@ class ModelBuilder {
 
  private:
   bool replace() {
-    switch (plan_.objects[object_]) {
+    switch (how_.representation) {
       case Representation::kept: return false;
       case Representation::recognised: return recognised(Pieces::whole);
       case Representation::recognised_parts: return recognised(Pieces::parts);
@@ -91,7 +95,7 @@ class ModelBuilder {
     return true;
   }
 
-  double allowed() const { return plan_.allowances[object_]; }
+  double allowed() const { return how_.allowance; }
 
   bool recalled_coarser() {
     return may_recall(object_) && tools_.recall_simplified &&
@@ -116,8 +120,11 @@ class ModelBuilder {
   /// Those within the allowance that will be kept as they are, and what they repeat.
   void find_repeated() {
     double tolerance = infinity;
-    for (const double allowed : plan_.allowances) tolerance = std::min(tolerance, allowed);
-    const auto kept = [&](std::uint32_t o) { return plan_.objects[o] == Representation::kept; };
+    for (const ObjectPlan& o : plan_.objects) tolerance = std::min(tolerance, o.allowance);
+    const auto kept = [&](std::uint32_t object) {
+      const auto found = std::ranges::lower_bound(plan_.objects, object, {}, &ObjectPlan::object);
+      return found == plan_.objects.end() || found->object != object || found->representation == Representation::kept;
+    };
     for (const Repeat& r : find_repeats(geometry_, std::isfinite(tolerance) ? tolerance : 0)) {
       if (!kept(r.first) || !kept(r.object)) continue;
       repeats_.emplace(r.object, r);
@@ -152,15 +159,15 @@ class ModelBuilder {
   /// Where not, nothing need be copied.
   bool may_change() const {
     if (plan_.find_repeats) return true;
-    for (std::uint32_t i = 0; i < plan_.objects.size(); ++i)
-      if (plan_.objects[i] != Representation::kept && (!is_from_before(plan_.objects[i]) || may_recall(i))) return true;
-    return false;
+    return std::ranges::any_of(plan_.objects, [&](const ObjectPlan& o) {
+      return o.representation != Representation::kept && (!is_from_before(o.representation) || may_recall(o.object));
+    });
   }
 
   void keep() { add(geometry_, object_); }
 
   Replacement replacement() const {
-    return {object_, plan_.objects[object_], primitive_count(geometry_, object_), 0, 0, 0};
+    return {object_, how_.representation, primitive_count(geometry_, object_), 0, 0, 0};
   }
 
   std::uint32_t material() const { return geometry_.objects[object_].material; }
@@ -176,6 +183,7 @@ class ModelBuilder {
   const ModelPlan& plan_;
   const MeshTools& tools_;
   std::uint32_t object_ = 0;                                         // the scene's, that is at hand
+  ObjectPlan how_;                                                   // what becomes of it
   std::map<std::uint32_t, Repeat> repeats_;                          // by object
   std::map<std::uint32_t, std::shared_ptr<const Geometry>> groups_;  // by the object that others repeat
   GeometryBuilder builder_;

@@ -71,7 +71,8 @@ class Options {
     return quadrics(Representation::recognised_parts, parts_share * object_.quadric_share, device_.recognise_parts);
   }
   Option recalled() const {
-    return quadrics(Representation::recalled, parts_share * object_.quadric_share, recall_seconds);
+    const double share = std::max(object_.ball_share, parts_share * object_.quadric_share);
+    return quadrics(Representation::recalled, share, recall_seconds);
   }
 
   double triangles_left(double per_area, double allowed) const {
@@ -150,23 +151,23 @@ bool alike(const ObjectStatistics& a, const ObjectStatistics& b) {
 
 /// Large meshes that may be the same as others.
 struct Repeated {
-  std::vector<bool> is;  ///< of each object
+  std::vector<bool> is;  ///< of each mesh
   std::size_t more = 0;  ///< how many there are beyond one of each
   double triangles = 0;  ///< of those
 };
 
 Repeated likely_repeats(const SceneStatistics& scene) {
+  const std::vector<ObjectStatistics>& all = scene.meshes;
   std::vector<std::uint32_t> meshes;
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
-    if (scene.objects[i].triangles >= fewest_repeated_triangles) meshes.push_back(i);
-  const auto key = [&](std::uint32_t i) { return std::tuple(scene.objects[i].triangles, scene.objects[i].spacing, i); };
-  std::ranges::sort(meshes, {}, key);
-  Repeated repeated{std::vector<bool>(scene.objects.size(), false)};
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    if (all[i].triangles >= fewest_repeated_triangles) meshes.push_back(i);
+  std::ranges::sort(meshes, {}, [&](std::uint32_t i) { return std::tuple(all[i].triangles, all[i].spacing, i); });
+  Repeated repeated{std::vector<bool>(all.size(), false)};
   for (std::size_t i = 1; i < meshes.size(); ++i) {
-    if (!alike(scene.objects[meshes[i - 1]], scene.objects[meshes[i]])) continue;
+    if (!alike(all[meshes[i - 1]], all[meshes[i]])) continue;
     repeated.is[meshes[i - 1]] = repeated.is[meshes[i]] = true;
     ++repeated.more;
-    repeated.triangles += scene.objects[meshes[i]].triangles;
+    repeated.triangles += all[meshes[i]].triangles;
   }
   return repeated;
 }
@@ -201,21 +202,14 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
     plan.choices.push_back(*choice);
   }
   const TracerCost& usual = usual_tracer(device);
-  plan.objects.reserve(scene.objects.size());
-  plan.allowances.reserve(scene.objects.size());
   std::array<Tally, representation_names.size()> tallies;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const ObjectStatistics& o = scene.objects[i];
+  tallies[0].objects = scene.objects - scene.meshes.size();  // often many, with nothing to weigh
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const ObjectStatistics& o = scene.meshes[i];
     const double allowed = model_share * allowance(tolerance, o, scene.pixel);
-    plan.allowances.push_back(allowed);
-    if (o.triangles == 0) {  // often many, with nothing to weigh
-      plan.objects.push_back(Representation::kept);
-      ++tallies[0].objects;
-      continue;
-    }
     const Options options(o, allowed, scene, device, usual, effort);
     const Option best = plan.find_repeats && repeated.is[i] ? options.kept() : options.best();
-    plan.objects.push_back(best.representation);
+    plan.objects.push_back({o.object, best.representation, allowed});
     tallies[static_cast<std::size_t>(best.representation)].add(o, best.seconds, options.kept().seconds);
   }
   for (std::size_t r = 0; r < tallies.size(); ++r)

@@ -31,12 +31,18 @@ struct Choice {
   std::string why;
 };
 
+/// What one object is to be represented by.
+struct ObjectPlan {
+  std::uint32_t object = 0;
+  Representation representation = Representation::kept;
+  double allowance = 0;  ///< how far it may be moved, in units of the scene
+};
+
 /// How the objects of a scene are to be represented.
 struct ModelPlan {
-  std::vector<Representation> objects;  ///< one for each
-  std::vector<double> allowances;       ///< how far each may be moved, in units of the scene
-  bool prepare = false;                 ///< whether coarser meshes are made as coarse as can be, and kept
-  bool find_repeats = false;            ///< whether meshes that repeat others become instances
+  std::vector<ObjectPlan> objects;  ///< by ascending number; the others are kept
+  bool prepare = false;             ///< whether coarser meshes are made as coarse as can be, and kept
+  bool find_repeats = false;        ///< whether meshes that repeat others become instances
   std::vector<Choice> choices;
 };
 
@@ -44,6 +50,7 @@ struct ModelPlan {
 struct TracingPlan {
   std::string tracer;
   Precision precision = Precision::robust;
+  Build build = Build::thorough;
   double seconds = 0;  ///< predicted, to build and to trace
   double bytes = 0;    ///< predicted, of the tracer
   double error = 0;    ///< predicted, in units of the tolerance: of arithmetic alone
@@ -64,8 +71,9 @@ ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& dev
                      const Effort& effort = {});
 
 /// `gpu`: whether the machine has one that is more than software; the hybrid then measures, and decides, as it goes.
+/// `replaced`: whether meshes were, which leaves arithmetic less of the tolerance.
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
-                         bool gpu);
+                         bool gpu, bool replaced = false);
 
 /// Seconds to build a tracer's structure over a scene and to ask it all rays.
 double predicted_seconds(const SceneStatistics& scene, const TracerCost& cost);

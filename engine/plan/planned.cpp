@@ -14,7 +14,7 @@ Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   Planned result{make_model(canonical.scene, model, options.tools), {}, canonical.choices, 0};
   result.choices.insert(result.choices.end(), model.choices.begin(), model.choices.end());
   const auto trace = [&](const SceneStatistics& made) {
-    return plan_tracing(made, device, options.tolerance, options.gpu);
+    return plan_tracing(made, device, options.tolerance, options.gpu, !result.model.replaced.empty());
   };
   result.tracing = result.model.replaced.empty()
                        ? trace(given)

@@ -1,11 +1,14 @@
 #include "engine/plan/statistics.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <span>
 
 #include "accel/tracer.h"
 #include "engine/plan/patches.h"
@@ -23,61 +26,93 @@ double thickness(const Quadric& q, double radius) {
   return q.type == QuadricType::general ? std::min(unit, radius) : unit;
 }
 
-ObjectStatistics at(const Box& box, const glm::dvec3& eye, Object::Kind kind) {
-  ObjectStatistics result{.kind = kind};
+ObjectStatistics at(const Box& box, const glm::dvec3& eye) {
+  ObjectStatistics result;
   result.radius = box.finite() ? glm::length(box.size()) / 2 : box.empty() ? 0 : infinity;
   result.distance = box.empty() ? infinity : std::sqrt(box.squared_distance(eye));
   return result;
 }
 
-ObjectStatistics look_at(const Geometry& g, const Quadric& q, const glm::dvec3& eye) {
-  ObjectStatistics result = at(bounds(g, q), eye, Object::Kind::quadric);
-  result.type = q.type;
-  result.thickness = thickness(q, result.radius);
-  return result;
+void look_at_patches(const Geometry& g, std::uint32_t patches, ObjectStatistics& mesh) {
+  const Patches seen = look_at_patches(g, mesh.object, patches);
+  mesh.spacing = std::sqrt(2 * seen.area);
+  mesh.quadric_share = seen.quadric_share;
+  mesh.ball_share = seen.ball_share;
 }
 
-ObjectStatistics look_at(const Geometry& g, std::uint32_t mesh, const Box& box, const glm::dvec3& eye,
-                         std::uint32_t patches) {
-  ObjectStatistics result = at(box, eye, Object::Kind::mesh);
-  result.triangles = primitive_count(g, mesh);
-  if (result.triangles < smallest_mesh) return result;
-  const Patches seen = look_at_patches(g, mesh, patches);
-  result.spacing = std::sqrt(2 * seen.area);
-  result.quadric_share = seen.quadric_share;
-  result.ball_share = seen.ball_share;
-  return result;
+/// What is seen of many in one look at each.
+struct Seen {
+  Drift drift;
+  TraitsByType traits{};
+};
+
+/// look(range, seen) adds what a part of so many shows.
+template <class Look>
+Seen see(std::size_t count, Look&& look) {
+  constexpr std::size_t grain = 1024;
+  const auto add = [&](const tbb::blocked_range<std::size_t>& range, Seen seen) {
+    look(range, seen);
+    return seen;
+  };
+  const auto both = [](Seen a, const Seen& b) {
+    a.drift.add(b.drift);
+    add_traits(a.traits, b.traits);
+    return a;
+  };
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, count, grain), Seen{}, add, both);
 }
 
-void look_at_meshes(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
-  std::vector<std::uint32_t> meshes;
-  meshes.reserve(g.mesh_bounds.size());
-  for (std::uint32_t i = 0; meshes.size() < g.mesh_bounds.size(); ++i)
-    if (g.objects[i].kind == Object::Kind::mesh) meshes.push_back(i);
+Seen see_meshes(const Geometry& g, const glm::dvec3& eye, double extent) {
+  return see(g.mesh_bounds.size(), [&](const auto& range, Seen& seen) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) seen.drift.add(at(g.mesh_bounds[i], eye), extent);
+  });
+}
+
+/// From outside, no quadric is nearer than the bounds of all, nor larger; those of each then need not be worked out.
+Seen see_quadrics(const Geometry& g, const glm::dvec3& eye, double extent) {
+  const ObjectStatistics all = at(g.quadric_bounds, eye);
+  const auto look = [&](const Quadric& q) {
+    ObjectStatistics result = all.distance > 0 && q.type != QuadricType::general ? all : at(bounds(g, q), eye);
+    result.thickness = thickness(q, result.radius);
+    return result;
+  };
+  return see(g.quadrics.size(), [&](const auto& range, Seen& seen) {
+    for (const Quadric& q : std::span(g.quadrics).subspan(range.begin(), range.size())) {
+      seen.drift.add(look(q), extent);
+      add_traits(seen.traits, std::span(&q, 1));
+    }
+  });
+}
+
+/// Those that are not too small, in the order of objects.
+std::vector<ObjectStatistics> large_meshes(const Geometry& g, const glm::dvec3& eye) {
+  std::vector<ObjectStatistics> meshes;
+  std::size_t place = 0;  // among meshes
+  for (std::uint32_t i = 0; place < g.mesh_bounds.size(); ++i) {
+    if (g.objects[i].kind != Object::Kind::mesh) continue;
+    const Box& box = g.mesh_bounds[place++];
+    const std::uint32_t triangles = primitive_count(g, i);
+    if (triangles < smallest_mesh) continue;
+    meshes.push_back(at(box, eye));
+    meshes.back().object = i;
+    meshes.back().triangles = triangles;
+  }
   const auto patches = static_cast<std::uint32_t>(
       std::clamp(most_patches / std::max<std::size_t>(meshes.size(), 1), fewest_patches, enough_patches));
-  tbb::parallel_for(std::size_t{0}, meshes.size(),
-                    [&](std::size_t i) { objects[meshes[i]] = look_at(g, meshes[i], g.mesh_bounds[i], eye, patches); });
+  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) { look_at_patches(g, patches, meshes[i]); });
+  return meshes;
 }
 
 /// Several instances may be parts of one object.
-void look_at_instances(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
-  if (g.instances.empty()) return;
-  std::vector<Box> boxes(objects.size());
-  for (const Instance& i : g.instances) boxes[i.object].add(bounds(g, i));
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (g.objects[i].kind == Object::Kind::instance) objects[i] = at(boxes[i], eye, Object::Kind::instance);
-}
-
-void look_at_quadrics(const Geometry& g, const glm::dvec3& eye, std::span<ObjectStatistics> objects) {
-  tbb::parallel_for(std::size_t{0}, g.quadrics.size(),
-                    [&](std::size_t i) { objects[g.quadrics[i].object] = look_at(g, g.quadrics[i], eye); });
-}
-
-void count(const Geometry& g, SceneStatistics& result) {
-  result.triangles += g.triangles.size();
-  result.quadrics += g.quadrics.size();
-  add_traits(result.traits, g.quadrics);
+Drift of_instances(const Geometry& g, const glm::dvec3& eye, double extent) {
+  Drift drift;
+  for (std::size_t i = 0; i < g.instances.size();) {
+    Box box;
+    const std::uint32_t object = g.instances[i].object;
+    for (; i < g.instances.size() && g.instances[i].object == object; ++i) box.add(bounds(g, g.instances[i]));
+    drift.add(at(box, eye), extent);
+  }
+  return drift;
 }
 
 }  // namespace
@@ -87,20 +122,44 @@ void check(const Tolerance& tolerance) {
     throw Error("a tolerance of " + std::to_string(tolerance.value) + " says nothing: give 0, which is exact, or more");
 }
 
+void Drift::add(const ObjectStatistics& o, double extent) {
+  const double way = std::min(o.distance + 2 * o.radius, 4 * extent);
+  // Within an object's bounds hits may be as near as a part of its size.
+  const double nearest = o.distance > 0 ? o.distance : 0.05 * std::min(o.radius, extent);
+  const double robust = extent + way, textbook = robust + (o.thickness > 0 ? way * way / o.thickness : 0);
+  const double per_length = nearest > 0 ? 1 / nearest : 0;
+  add(Drift{robust, robust * per_length, textbook, textbook * per_length});
+}
+
+void Drift::add(const Drift& other) {
+  length = std::max(length, other.length);
+  angle = std::max(angle, other.angle);
+  textbook_length = std::max(textbook_length, other.textbook_length);
+  textbook_angle = std::max(textbook_angle, other.textbook_angle);
+}
+
 SceneStatistics gather_statistics(const Scene& scene, double rays, bool coherent) {
   const Geometry& g = *scene.geometry;
-  const Camera& camera = scene.camera;
+  const glm::dvec3 from = scene.camera.from, eye = glm::abs(from);
   SceneStatistics result;
-  result.objects.resize(g.objects.size());
-  look_at_meshes(g, camera.from, result.objects);
-  look_at_instances(g, camera.from, result.objects);
-  look_at_quadrics(g, camera.from, result.objects);
-  count(g, result);
-  for (const auto& group : g.groups) count(*group, result);
-  result.instances = g.instances.size();
-  const glm::dvec3 eye = glm::abs(camera.from);
   result.extent = std::max({g.bounds.finite() ? g.bounds.extent() : 0, eye.x, eye.y, eye.z});
-  result.pixel = pixel_angle(camera);
+  const auto drift_of = [&](Object::Kind kind) -> Drift& { return result.drift[static_cast<std::size_t>(kind)]; };
+  const Seen quadrics = see_quadrics(g, from, result.extent);
+  drift_of(Object::Kind::mesh) = see_meshes(g, from, result.extent).drift;
+  drift_of(Object::Kind::quadric) = quadrics.drift;
+  drift_of(Object::Kind::instance) = of_instances(g, from, result.extent);
+  result.traits = quadrics.traits;
+  result.meshes = large_meshes(g, from);
+  result.objects = g.objects.size();
+  result.triangles = g.triangles.size();
+  result.quadrics = g.quadrics.size();
+  for (const auto& group : g.groups) {
+    result.triangles += group->triangles.size();
+    result.quadrics += group->quadrics.size();
+    add_traits(result.traits, group->quadrics);
+  }
+  result.instances = g.instances.size();
+  result.pixel = pixel_angle(scene.camera);
   result.rays = rays;
   result.coherent = coherent;
   return result;

@@ -1,4 +1,5 @@
 #include <array>
+#include <span>
 
 #include "engine/plan/costs.h"
 
@@ -7,35 +8,25 @@ namespace {
 
 bool is_textbook(Precision precision) { return precision == Precision::half || precision == Precision::fast; }
 
-/// Embree's fast mode lets rays through between triangles: those are wrong by any distance.
-bool leaks(const ObjectStatistics& o, const TracerCost& cost) {
-  return o.kind != Object::Kind::quadric && is_textbook(cost.precision);
-}
-
-/// First-order: half a dozen roundings of coordinates as large as the scene's, and of the way to the object and through
-/// it. The textbook formula loses the square of the distance against the radius: it is as if the radius were off.
-double position_error(const ObjectStatistics& o, const SceneStatistics& scene, const TracerCost& cost) {
-  if (leaks(o, cost)) return infinity;
+/// Of all objects of a kind, in units of the tolerance. Embree's fast mode lets rays through between triangles: those
+/// are wrong by any distance.
+double drift_error(const SceneStatistics& scene, Object::Kind kind, const TracerCost& cost, Tolerance::Unit unit) {
+  const Drift& drift = scene.drift[static_cast<std::size_t>(kind)];
+  const bool textbook = is_textbook(cost.precision), mesh = kind == Object::Kind::mesh;
+  if (!(drift.length > 0)) return 0;
+  if (textbook && kind != Object::Kind::quadric) return infinity;
   constexpr double roundings = 6;
-  const double way = std::min(o.distance + 2 * o.radius, 4 * scene.extent);
-  if (o.kind == Object::Kind::mesh) return roundings * cost.triangle_roundoff * (scene.extent + way);
-  const double lost = is_textbook(cost.precision) && o.thickness > 0 ? way * way / o.thickness : 0;
-  const double u = o.kind == Object::Kind::instance ? std::max(cost.triangle_roundoff, cost.quadric_roundoff)
-                                                    : cost.quadric_roundoff;
-  return roundings * u * (scene.extent + way + lost);
+  const double u = mesh                            ? cost.triangle_roundoff
+                   : kind == Object::Kind::quadric ? cost.quadric_roundoff
+                                                   : std::max(cost.triangle_roundoff, cost.quadric_roundoff);
+  const double length = textbook ? drift.textbook_length : drift.length,
+               angle = textbook ? drift.textbook_angle : drift.angle;
+  return roundings * u * (unit == Tolerance::Unit::scene ? length : angle / scene.pixel);
 }
 
-/// A length at an object in units of the tolerance. Within an object's bounds hits may be as near as a part of its
-/// size.
-double in_units(double length, const ObjectStatistics& o, const SceneStatistics& scene, Tolerance::Unit unit) {
-  if (unit == Tolerance::Unit::scene) return length;
-  const double nearest = o.distance > 0 ? o.distance : 0.05 * std::min(o.radius, scene.extent);
-  return nearest > 0 ? length / (nearest * scene.pixel) : 0;
-}
-
-bool keeps_within(double error, const TracerCost& cost, const Tolerance& tolerance) {
+bool keeps_within(double error, const TracerCost& cost, const Tolerance& tolerance, bool replaced) {
   if (tolerance.value == 0) return cost.precision == Precision::certified;
-  return error <= arithmetic_share * tolerance.value;
+  return error <= (replaced ? 1 - model_share : arithmetic_share) * tolerance.value;
 }
 
 struct Candidate {
@@ -45,13 +36,19 @@ struct Candidate {
   double handicap;  ///< the usual one is known never to be bad
 };
 
+/// Built quickly, Embree holds each kind of primitives apart: that is for scenes of one kind.
+bool may_be_built(const SceneStatistics& scene, const TracerCost& cost) {
+  return cost.build == Build::thorough || scene.primitives() == scene.triangles;
+}
+
 /// Those that are accurate enough, by their time; then the others, by their error.
 std::vector<Candidate> candidates(const SceneStatistics& scene, const DeviceMeasurements& device,
-                                  const Tolerance& tolerance) {
+                                  const Tolerance& tolerance, bool replaced) {
   std::vector<Candidate> all;
   for (const TracerCost& cost : device.tracers) {
+    if (!may_be_built(scene, cost)) continue;
     const double error = predicted_error(scene, cost, tolerance);
-    all.push_back({&cost, predicted_seconds(scene, cost), error, keeps_within(error, cost, tolerance),
+    all.push_back({&cost, predicted_seconds(scene, cost), error, keeps_within(error, cost, tolerance, replaced),
                    &cost == &usual_tracer(device) ? 1 : 1 / worthwhile});
   }
   std::ranges::stable_sort(all, [](const Candidate& a, const Candidate& b) {
@@ -63,21 +60,50 @@ std::vector<Candidate> candidates(const SceneStatistics& scene, const DeviceMeas
 
 std::string name_of(const TracerCost& cost) { return cost.tracer + ", " + std::string(to_string(cost.precision)); }
 
-/// The alternative is the fastest of the others: what accuracy costs, or what speed would have cost.
+bool is_same_tracer(const TracerCost& a, const TracerCost& b) {
+  return a.tracer == b.tracer && a.precision == b.precision;
+}
+
+/// The alternative is the fastest of those `among` the others.
+template <class Among>
+Choice choice(const char* subject, std::string (*name)(const TracerCost&), const std::vector<Candidate>& sorted,
+              Among&& among) {
+  const Candidate& best = sorted.front();
+  Choice c{subject, name(*best.cost), best.seconds, best.error, "", -1, -1, ""};
+  const Candidate* rival = nullptr;
+  for (const Candidate& other : std::span(sorted).subspan(1))
+    if (among(*other.cost) && (!rival || other.seconds * other.handicap < rival->seconds * rival->handicap))
+      rival = &other;
+  if (!rival) return c;
+  c.instead = name(*rival->cost);
+  c.instead_seconds = rival->seconds;
+  c.instead_error = rival->error;
+  return c;
+}
+
+/// Beside the fastest of the other tracers: what accuracy costs, or what speed would have cost.
 Choice tracer_choice(const std::vector<Candidate>& sorted, const Tolerance& tolerance) {
   const Candidate& best = sorted.front();
-  Choice c{"tracer and precision", name_of(*best.cost), best.seconds, best.error, "", -1, -1, ""};
-  const auto rival = std::min_element(sorted.begin() + 1, sorted.end(), [](const Candidate& a, const Candidate& b) {
-    return a.seconds * a.handicap < b.seconds * b.handicap;
-  });
-  if (rival != sorted.end()) {
-    c.instead = name_of(*rival->cost);
-    c.instead_seconds = rival->seconds;
-    c.instead_error = rival->error;
-  }
+  Choice c = choice("tracer and precision", name_of, sorted,
+                    [&](const TracerCost& other) { return !is_same_tracer(other, *best.cost); });
   c.why = tolerance.value == 0 ? "a tolerance of 0 means exact: every answer is proven"
-          : best.accurate      ? "the fastest whose arithmetic takes no more than a tenth of the tolerance"
-                               : "none is known to keep within a tenth of the tolerance: the nearest to it";
+          : best.accurate      ? "the fastest whose arithmetic takes no more than its share of the tolerance"
+                               : "none is known to keep within its share of the tolerance: the nearest to it";
+  return c;
+}
+
+std::string structure_name(const TracerCost& cost) {
+  const std::string whose = cost.tracer == "embree" ? "Embree's BVH" : "our BVH";
+  return cost.build == Build::quick ? whose + ", built quickly" : whose;
+}
+
+Choice structure_choice(const std::vector<Candidate>& sorted) {
+  const TracerCost& best = *sorted.front().cost;
+  Choice c =
+      choice("structure", structure_name, sorted, [&](const TracerCost& other) { return is_same_tracer(other, best); });
+  c.why = best.build == Build::quick ? "there are too few rays to repay a thorough build"
+          : c.instead.empty()        ? "what the tracer builds for such a scene"
+                                     : "there are rays enough to repay a thorough build";
   return c;
 }
 
@@ -101,8 +127,9 @@ Choice kernel_choice(const SceneStatistics& scene) {
 }  // namespace
 
 const TracerCost& usual_tracer(const DeviceMeasurements& device) {
-  const auto found = std::ranges::find_if(
-      device.tracers, [](const TracerCost& t) { return t.tracer == "embree" && t.precision == Precision::robust; });
+  const auto found = std::ranges::find_if(device.tracers, [](const TracerCost& t) {
+    return t.tracer == "embree" && t.precision == Precision::robust && t.build == Build::thorough;
+  });
   return found == device.tracers.end() ? device.tracers.at(0) : *found;
 }
 
@@ -118,27 +145,26 @@ double predicted_seconds(const SceneStatistics& scene, const TracerCost& cost) {
 double predicted_error(const SceneStatistics& scene, const TracerCost& cost, const Tolerance& tolerance) {
   if (cost.precision == Precision::certified) return 0;
   double largest = 0;
-  for (const ObjectStatistics& o : scene.objects) {
-    largest = std::max(largest, in_units(position_error(o, scene, cost), o, scene, tolerance.unit));
-    if (largest == infinity) break;
-  }
+  for (const Object::Kind kind : {Object::Kind::mesh, Object::Kind::quadric, Object::Kind::instance})
+    largest = std::max(largest, drift_error(scene, kind, cost, tolerance.unit));
   return largest;
 }
 
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
-                         bool gpu) {
+                         bool gpu, bool replaced) {
   check(tolerance);
-  const std::vector<Candidate> sorted = candidates(scene, device, tolerance);
+  const std::vector<Candidate> sorted = candidates(scene, device, tolerance, replaced);
   const TracerCost& best = *sorted.front().cost;
   TracingPlan plan;
   // The hybrid's processor half is embree; with a GPU it measures both and shares the work as it goes.
   plan.tracer = gpu && best.tracer == "embree" ? "auto" : best.tracer;
   plan.precision = best.precision;
+  plan.build = best.build;
   plan.seconds = sorted.front().seconds;
   plan.error = sorted.front().error;
   plan.bytes = static_cast<double>(scene.triangles) * best.triangle.bytes +
                static_cast<double>(scene.quadrics) * best.quadric.bytes;
-  plan.choices = {tracer_choice(sorted, tolerance), kernel_choice(scene)};
+  plan.choices = {tracer_choice(sorted, tolerance), structure_choice(sorted), kernel_choice(scene)};
   return plan;
 }
 

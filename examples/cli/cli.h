@@ -89,7 +89,7 @@ struct MadeTracer {
   std::string said;  ///< while it was made
 };
 MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
-                       const Common& common);
+                       const Common& common, Build build = Build::thorough);
 
 /// One line on stderr, unless quiet: `note: ...`.
 void note(const Common& common, const std::string& text);

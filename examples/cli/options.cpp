@@ -137,7 +137,7 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
 }
 
 MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
-                       const Common& common) {
+                       const Common& common, Build build) {
   // Who leaves the choice to us is told what it was on demand, and in --stats; what goes wrong later is told at once.
   const bool tell = name != "auto" || common.verbosity == Verbosity::verbose;
   const auto made = std::make_shared<std::atomic<bool>>(false);
@@ -147,7 +147,7 @@ MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> 
     if (!later) said = text;
     if (later || tell) note(common, text);
   };
-  auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say});
+  auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say, build});
   *made = true;
   return {std::move(tracer), said};
 }

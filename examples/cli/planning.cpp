@@ -140,7 +140,8 @@ MadeTracer PlannedScene::make_tracer(const std::string& tracer, std::optional<Pr
   const bool free = plan_ && tracer == "auto" && !precision;
   const Precision usual = plan_ && *options_.tolerance == 0 ? Precision::certified : Precision::robust;
   return cli::make_tracer(free ? plan_->tracing.tracer : tracer, scene().geometry,
-                          free ? plan_->tracing.precision : precision.value_or(usual), common_);
+                          free ? plan_->tracing.precision : precision.value_or(usual), common_,
+                          free ? plan_->tracing.build : Build::thorough);
 }
 
 Json PlannedScene::verify(Tracer& tracer, const std::vector<Ray>& rays) const {
@@ -182,6 +183,7 @@ Json PlannedScene::json() const {
           {"unit", unit_name(tolerance_of(options_))},
           {"tracer", plan_->tracing.tracer},
           {"precision", to_string(plan_->tracing.precision)},
+          {"build", to_string(plan_->tracing.build)},
           {"predicted_s", plan_->tracing.seconds},
           {"predicted_bytes", plan_->tracing.bytes},
           {"predicted_error", plan_->tracing.error},

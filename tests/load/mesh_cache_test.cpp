@@ -208,7 +208,7 @@ TEST_F(MeshCache, GivesAPlanWhatWasFoundBefore) {
   GeometryBuilder builder;
   builder.add(bore_and_ball());
   scene.geometry = builder.build();
-  const ModelPlan plan{.objects = {Representation::recalled}, .allowances = {tolerance}};
+  const ModelPlan plan{.objects = {{0, Representation::recalled, tolerance}}};
   const MeshTools tools = cached_mesh_tools();
   EXPECT_TRUE(make_model(scene, plan, tools).replaced.empty());
   recognise_cached(bore_and_ball(), tolerance, Pieces::parts);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -11,18 +12,22 @@
 namespace rayengine {
 namespace {
 
-using Make = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>, Precision);
+enum class Kind { embree, quick_embree, bvh };
 
-/// What both tracers of the processor promise at `robust`.
-class CpuTracer : public testing::TestWithParam<Make> {
+/// What both tracers of the processor promise at `robust`, however they are built.
+class CpuTracer : public testing::TestWithParam<Kind> {
  protected:
   static std::unique_ptr<Tracer> tracer_of(std::shared_ptr<const Geometry> geometry) {
-    return GetParam()(std::move(geometry), Precision::robust);
+    if (GetParam() == Kind::bvh) return make_bvh_tracer(std::move(geometry), Precision::robust);
+    const Build build = GetParam() == Kind::quick_embree ? Build::quick : Build::thorough;
+    return make_embree_tracer(std::move(geometry), Precision::robust, build);
   }
   static std::unique_ptr<Tracer> tracer_of(GeometryBuilder& builder) { return tracer_of(builder.build()); }
 };
-INSTANTIATE_TEST_SUITE_P(Both, CpuTracer, testing::Values(make_embree_tracer, make_bvh_tracer),
-                         [](const auto& info) { return info.param == Make{make_bvh_tracer} ? "bvh" : "embree"; });
+std::string name_of(const testing::TestParamInfo<Kind>& info) {
+  return std::array{"embree", "quick_embree", "bvh"}[static_cast<std::size_t>(info.param)];
+}
+INSTANTIATE_TEST_SUITE_P(All, CpuTracer, testing::Values(Kind::embree, Kind::quick_embree, Kind::bvh), name_of);
 
 Hit closest(Tracer& tracer, const Ray& ray, RayClass ray_class = RayClass::primary) {
   Hit hit;

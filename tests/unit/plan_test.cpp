@@ -27,17 +27,20 @@ ObjectStatistics far_mesh(std::uint32_t triangles, double spacing) {
 }
 
 SceneStatistics scene_of(std::vector<ObjectStatistics> objects) {
-  SceneStatistics scene{.objects = std::move(objects), .pixel = 1e-3, .rays = 1e5};
-  for (const ObjectStatistics& o : scene.objects) {
-    scene.extent = std::max(scene.extent, o.distance + o.radius);
+  SceneStatistics scene{.objects = objects.size(), .pixel = 1e-3, .rays = 1e5};
+  for (const ObjectStatistics& o : objects) scene.extent = std::max(scene.extent, o.distance + o.radius);
+  for (const ObjectStatistics& o : objects) {
+    const bool quadric = o.thickness > 0;
+    scene.drift[static_cast<std::size_t>(quadric ? Object::Kind::quadric : Object::Kind::mesh)].add(o, scene.extent);
     scene.triangles += o.triangles;
-    scene.quadrics += o.kind == Object::Kind::quadric;
+    scene.quadrics += quadric;
+    if (o.triangles >= smallest_mesh) scene.meshes.push_back(o);
   }
   return scene;
 }
 
 Representation chosen_for(const ObjectStatistics& o, const Tolerance& tolerance = half_pixel) {
-  return plan_model(scene_of({o}), usual_device(), tolerance).objects.at(0);
+  return plan_model(scene_of({o}), usual_device(), tolerance).objects.at(0).representation;
 }
 
 TEST(Plan, RefusesTolerancesThatSayNothing) {
@@ -56,7 +59,7 @@ TEST(Plan, LooksForBallsOnlyWherePatchesLieOnThem) {
   EXPECT_EQ(chosen_for(mesh), Representation::recognised);
   EXPECT_EQ(chosen_for(mesh, exact), Representation::kept);
   mesh.triangles = 100;
-  EXPECT_EQ(chosen_for(mesh), Representation::kept);
+  EXPECT_TRUE(plan_model(scene_of({mesh}), usual_device(), half_pixel).objects.empty());
 }
 
 TEST(Plan, LooksAtPartsOnlyWhereRaysRepayIt) {
@@ -64,14 +67,15 @@ TEST(Plan, LooksAtPartsOnlyWhereRaysRepayIt) {
   mesh.quadric_share = 1;
   EXPECT_EQ(chosen_for(mesh), Representation::recalled);  // which looks for none
   const Effort prepare{.prepare = true};
-  EXPECT_EQ(plan_model(scene_of({mesh}), usual_device(), half_pixel, prepare).objects[0],
+  EXPECT_EQ(plan_model(scene_of({mesh}), usual_device(), half_pixel, prepare).objects[0].representation,
             Representation::recognised_parts);
   mesh.quadric_share = 0;
   EXPECT_EQ(chosen_for(mesh), Representation::kept);
   mesh.quadric_share = 1;
   DeviceMeasurements quick = usual_device();
   quick.recognise_parts = 0;
-  EXPECT_EQ(plan_model(scene_of({mesh}), quick, half_pixel).objects[0], Representation::recognised_parts);
+  EXPECT_EQ(plan_model(scene_of({mesh}), quick, half_pixel).objects[0].representation,
+            Representation::recognised_parts);
 }
 
 TEST(Plan, AllowancesFollowTheDistance) {
@@ -79,10 +83,10 @@ TEST(Plan, AllowancesFollowTheDistance) {
   far.distance = 200;
   within.distance = 0;
   const ModelPlan plan = plan_model(scene_of({near, far, within}), usual_device(), half_pixel);
-  EXPECT_GT(plan.allowances[0], 0.3 * 0.5 * 1e-3 * 100);
-  EXPECT_LE(plan.allowances[0], 0.5 * 1e-3 * 100);
-  EXPECT_DOUBLE_EQ(plan.allowances[1], 2 * plan.allowances[0]);
-  EXPECT_EQ(plan.allowances[2], 0);
+  EXPECT_GT(plan.objects[0].allowance, 0.3 * 0.5 * 1e-3 * 100);
+  EXPECT_LE(plan.objects[0].allowance, 0.5 * 1e-3 * 100);
+  EXPECT_DOUBLE_EQ(plan.objects[1].allowance, 2 * plan.objects[0].allowance);
+  EXPECT_EQ(plan.objects[2].allowance, 0);
 }
 
 TEST(Plan, ZeroIsProven) {
@@ -93,7 +97,7 @@ TEST(Plan, ZeroIsProven) {
 
 /// A ball so far away that single precision cannot tell its radius.
 TEST(Plan, TakesThePrecisionThatTheDistanceNeeds) {
-  ObjectStatistics ball{.kind = Object::Kind::quadric, .radius = 1, .thickness = 1, .distance = 10};
+  ObjectStatistics ball{.radius = 1, .thickness = 1, .distance = 10};
   const TracerCost* fast = nullptr;
   for (const TracerCost& t : usual_device().tracers)
     if (t.precision == Precision::fast) fast = &t;
@@ -111,14 +115,25 @@ TEST(Plan, TakesNoTracerThatLeaks) {
   DeviceMeasurements device = usual_device();
   for (TracerCost& t : device.tracers)
     if (t.precision == Precision::fast) t.triangle = {}, t.quadric = {};
-  const ObjectStatistics ball{.kind = Object::Kind::quadric, .radius = 1, .thickness = 1, .distance = 10};
+  const ObjectStatistics ball{.radius = 1, .thickness = 1, .distance = 10};
   EXPECT_EQ(plan_tracing(scene_of({ball}), device, half_pixel, false).precision, Precision::fast);
   EXPECT_NE(plan_tracing(scene_of({ball, far_mesh(12, 1)}), device, half_pixel, false).precision, Precision::fast);
 }
 
+TEST(Plan, BuildsQuicklyForFewRaysAmongTriangles) {
+  SceneStatistics scene = scene_of({far_mesh(1000000, 1)});
+  const auto planned = [&] { return plan_tracing(scene, usual_device(), half_pixel, false); };
+  EXPECT_EQ(planned().build, Build::quick);
+  scene.rays = 1e9;
+  EXPECT_EQ(planned().build, Build::thorough);
+  scene.rays = 1e5;
+  ++scene.quadrics;
+  EXPECT_EQ(planned().build, Build::thorough);
+}
+
 TEST(Plan, EveryChoiceSaysWhy) {
   SceneStatistics scene = scene_of({far_mesh(100000, 0.2), far_mesh(10, 1)});
-  scene.objects[0].ball_share = 1;
+  scene.meshes[0].ball_share = 1;
   for (const Choice& c : plan_model(scene, usual_device(), half_pixel).choices) {
     EXPECT_FALSE(c.subject.empty() || c.chosen.empty() || c.why.empty());
     EXPECT_GE(c.seconds, 0);
@@ -199,7 +214,8 @@ TEST(PlannedScene, PutsBallsInPlaceOfTriangles) {
   EXPECT_EQ(model.geometry->quadrics.size(), 28u);
   EXPECT_EQ(model.object_numbers.front(), 0u);
   EXPECT_EQ(model.object_numbers.back(), 1u);
-  const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+  const auto tracer = make_tracer(planned.tracing.tracer, model.geometry,
+                                  {.precision = planned.tracing.precision, .build = planned.tracing.build});
   const Verification found = verify(scene, model, *tracer, half_pixel, random_camera_rays(scene.camera, 20000));
   EXPECT_EQ(found.broken, 0u);
   EXPECT_GT(found.hits, 10000u);
@@ -272,7 +288,8 @@ TEST(PlannedScene, HoldsMeshesOnceThatRepeat) {
     ASSERT_EQ(planned.model.replaced.size(), 1 + turned);
     EXPECT_EQ(model.geometry->instances.size(), 2 + turned);
     EXPECT_EQ(model.geometry->groups.size(), 1u);
-    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, {planned.tracing.precision});
+    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry,
+                                    {.precision = planned.tracing.precision, .build = planned.tracing.build});
     const Verification found = verify(scene, model, *tracer, tolerance, random_camera_rays(scene.camera, 20000));
     EXPECT_EQ(found.broken, 0u) << tolerance.value;
     EXPECT_GT(found.hits, 1000u);
@@ -284,7 +301,8 @@ TEST(PlannedScene, AtZeroIsTheSceneItself) {
   const Planned planned = plan_scene(scene, {.tolerance = exact, .rays = 1e6});
   EXPECT_EQ(planned.model.scene.geometry, scene.geometry);
   EXPECT_TRUE(planned.model.replaced.empty());
-  const auto tracer = make_tracer(planned.tracing.tracer, scene.geometry, {planned.tracing.precision});
+  const auto tracer = make_tracer(planned.tracing.tracer, scene.geometry,
+                                  {.precision = planned.tracing.precision, .build = planned.tracing.build});
   const Verification found = verify(scene, scene, *tracer, exact, random_camera_rays(scene.camera, 5000));
   EXPECT_EQ(found.broken, 0u);
 }
