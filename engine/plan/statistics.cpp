@@ -16,8 +16,8 @@
 namespace rayengine {
 namespace {
 
-// Patches that are looked at: of a mesh, and of all of them together while each has a few.
-constexpr std::size_t enough_patches = 24, fewest_patches = 4, most_patches = 1024;
+// Patches that are looked at: of a mesh, one for so many of its triangles, and of all meshes while each has a few.
+constexpr std::size_t enough_patches = 24, fewest_patches = 4, most_patches = 1024, triangles_a_patch = 1024;
 
 /// What is 1 in object space is at least so much in the world; a general form's size is known by its bounds alone.
 double thickness(const Quadric& q, double radius) {
@@ -97,9 +97,12 @@ std::vector<ObjectStatistics> large_meshes(const Geometry& g, const glm::dvec3& 
     meshes.back().object = i;
     meshes.back().triangles = triangles;
   }
-  const auto patches = static_cast<std::uint32_t>(
-      std::clamp(most_patches / std::max<std::size_t>(meshes.size(), 1), fewest_patches, enough_patches));
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) { look_at_patches(g, patches, meshes[i]); });
+  const std::size_t share = std::min(enough_patches, most_patches / std::max<std::size_t>(meshes.size(), 1));
+  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
+    const std::size_t patches =
+        std::max(std::min<std::size_t>(share, meshes[i].triangles / triangles_a_patch), fewest_patches);
+    look_at_patches(g, static_cast<std::uint32_t>(patches), meshes[i]);
+  });
   return meshes;
 }
 
