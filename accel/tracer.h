@@ -22,8 +22,9 @@ enum class Precision {
 std::string_view to_string(Precision precision);
 std::optional<Precision> parse_precision(std::string_view name);
 
-/// What the making of an acceleration structure may take: time that its rays save again, if they are many.
-enum class Build { thorough, quick };
+/// What the making of an acceleration structure may take: time that its rays save again, if they are many. `none`:
+/// there is none, and each ray is tested against all primitives.
+enum class Build { thorough, quick, none };
 
 /// What a caller must know to feed a tracer well.
 struct Limits {

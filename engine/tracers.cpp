@@ -25,6 +25,8 @@ std::unique_ptr<Tracer> make_embree(std::shared_ptr<const Geometry> geometry, co
 }
 
 std::unique_ptr<Tracer> make_bvh(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
+  if (options.build == Build::none && options.precision == Precision::robust)
+    return make_loop_tracer(std::move(geometry));
   return make_bvh_tracer(std::move(geometry), options.precision);
 }
 
@@ -36,6 +38,7 @@ std::unique_ptr<Tracer> make_reference(std::shared_ptr<const Geometry> geometry,
 std::unique_ptr<Tracer> make_stream(std::shared_ptr<const Geometry> geometry, const TracerOptions& options) {
   StreamOptions stream;
   stream.device = options.gpu;
+  stream.treelet_size = options.treelet;
   return make_stream_tracer(std::move(geometry), options.precision, stream);
 }
 

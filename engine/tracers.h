@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -17,7 +18,10 @@ struct TracerOptions {
   int gpu = -1;     ///< an EGL device by its number; the best when negative
   /// Told, in one line each and from any thread, what became of the GPU where a tracer can do without.
   std::function<void(const std::string&)> say;
-  Build build = Build::thorough;  ///< of embree's structure; the others' are built in one way
+  /// Of embree's structure, thorough or quick, and of that of bvh at `robust`, thorough or none. Others are built in
+  /// one way.
+  Build build = Build::thorough;
+  std::uint32_t treelet = 0;  ///< primitives that one of stream's treelets holds at most; 0 for what suits the device
 };
 
 /// Names of all tracers, and one line on each for --help.

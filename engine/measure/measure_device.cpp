@@ -17,14 +17,15 @@
 namespace rayengine {
 namespace {
 
-constexpr int runs = 5;
-constexpr int doublings = 10;      // between few primitives and many
+constexpr int runs = 5, fewest_runs = 2;
+constexpr double enough = 0.5;     // seconds
 constexpr int picture_side = 256;  // of the rays
 
-/// As fast as it went once: what else the machine does only slows.
+/// As fast as it went once: what else the machine does only slows. The first run may be one of cold caches.
 double best_seconds(const std::function<void()>& work) {
   double best = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < runs; ++run) {
+  const Stopwatch all;
+  for (int run = 0; run < runs && (run < fewest_runs || all.seconds() < enough); ++run) {
     const Stopwatch watch;
     work();
     best = std::min(best, watch.seconds());
@@ -44,10 +45,10 @@ std::shared_ptr<const Geometry> balls(std::size_t count) {
   return builder.build();
 }
 
-/// One crumpled ball of so many triangles, which are as uneven as those of scans: a round one would flatter quick
-/// builds.
-std::shared_ptr<const Geometry> ball_mesh(int subdivisions) {
-  Mesh ball = subdivided_sphere(subdivisions);
+/// One crumpled ball of 20 triangles, cut in four so many times, which are as uneven as those of scans: a round one
+/// would flatter quick builds.
+std::shared_ptr<const Geometry> ball_mesh(std::size_t subdivisions) {
+  Mesh ball = subdivided_sphere(static_cast<int>(subdivisions));
   for (glm::dvec3& p : ball.positions)
     p *= 1 + 0.3 * std::sin(11 * p.x) * std::cos(13 * p.y) + 0.1 * std::sin(41 * p.z) * std::cos(37 * p.x);
   GeometryBuilder builder;
@@ -55,56 +56,110 @@ std::shared_ptr<const Geometry> ball_mesh(int subdivisions) {
   return builder.build();
 }
 
-std::vector<Ray> coherent_rays(const Geometry& geometry) {
-  Camera camera;
-  camera.size = {picture_side, picture_side};
-  return primary_rays(framing_camera(geometry.bounds, camera));
+/// So many instances of a ball of 80 triangles, where the balls would be.
+std::shared_ptr<const Geometry> instances(std::size_t count) {
+  GeometryBuilder group, builder;
+  group.add(subdivided_sphere(1));
+  const std::shared_ptr<const Geometry> ball = group.build(), places = balls(count);
+  for (const Quadric& q : places->quadrics) builder.add(ball, object_to_world(q.to_object));
+  return builder.build();
+}
+
+/// Seen from outside, filling a third of it, and lit from beside the eye.
+Scene picture_of(const std::shared_ptr<const Geometry>& geometry) {
+  constexpr double wider = 1.3;
+  Scene scene;
+  scene.geometry = geometry;
+  scene.camera.size = {picture_side, picture_side};
+  scene.camera = framing_camera(geometry->bounds, scene.camera);
+  scene.camera.fov *= wider;
+  scene.lights = {{.position = scene.camera.from + glm::dvec3(geometry->bounds.extent())}};
+  return scene;
 }
 
 struct Sample {
-  double primitives, build, bytes, coherent, scattered;
+  double primitives = 0, build = 0, bytes = 0, coherent = 0, scattered = 0;
 };
 
-Sample measure(const std::shared_ptr<const Geometry>& geometry, const TracerCost& of, int threads, Limits& limits) {
-  const auto tracer =
-      make_tracer(of.tracer, geometry, {.precision = of.precision, .threads = threads, .build = of.build});
-  limits = tracer->limits();
-  const std::vector<Ray> near = coherent_rays(*geometry), far = random_rays(geometry->bounds, near.size());
-  std::vector<Hit> hits(near.size());
-  const auto per_ray = [&](const std::vector<Ray>& rays, RayClass ray_class) {
-    return best_seconds([&] { closest(*tracer, rays, hits, ray_class); }) / static_cast<double>(rays.size());
-  };
-  return {static_cast<double>(geometry->primitive_count), tracer->build_seconds(), static_cast<double>(tracer->bytes()),
-          per_ray(near, RayClass::primary), per_ray(far, RayClass::bounce)};
+/// Seconds a ray that a picture is expected to ask for, see expected_rays(): what hits nothing asks for no light.
+double of_picture(Tracer& tracer, const Scene& scene) {
+  const std::vector<Ray> primary = primary_rays(scene.camera);
+  std::vector<Hit> hits(primary.size());
+  const double to_see = best_seconds([&] { closest(tracer, primary, hits, RayClass::primary); });
+  const std::vector<Ray> shadow = shadow_rays(scene, primary, hits);
+  std::vector<std::uint32_t> status(shadow.size());
+  const double to_light = best_seconds([&] { any(tracer, shadow, status, RayClass::shadow); });
+  return (to_see + to_light) / expected_rays(scene, 1);
 }
 
-/// A straight line in the logarithm of their number.
-PrimitiveCost fit(const Sample& few, const Sample& many) {
-  const double between = std::log2(many.primitives / few.primitives), below = std::log2(few.primitives);
-  PrimitiveCost cost;
-  cost.build = many.build / many.primitives;
-  cost.bytes = many.bytes / many.primitives;
-  const auto line = [&](double(&c)[2], double low, double high) {
-    c[1] = std::max((high - low) / between, 0.0);
-    c[0] = std::max(low - c[1] * below, 0.0);
-  };
-  line(cost.coherent, few.coherent, many.coherent);
-  line(cost.scattered, few.scattered, many.scattered);
+double of_chords(Tracer& tracer, const Box& bounds) {
+  const std::vector<Ray> rays = random_rays(bounds, picture_side * picture_side);
+  std::vector<Hit> hits(rays.size());
+  return best_seconds([&] { closest(tracer, rays, hits, RayClass::bounce); }) / static_cast<double>(rays.size());
+}
+
+Sample measure(const std::shared_ptr<const Geometry>& geometry, const TracerCost& of, int threads, Limits& limits) {
+  const auto tracer = make_tracer(
+      of.tracer, geometry, {.precision = of.precision, .threads = threads, .build = of.build, .treelet = of.treelet});
+  limits = tracer->limits();
+  const std::size_t primitives = geometry->instances.empty() ? geometry->primitive_count : geometry->instances.size();
+  return {.primitives = static_cast<double>(primitives),
+          .build = tracer->build_seconds(),
+          .bytes = static_cast<double>(tracer->bytes()),
+          .coherent = of_picture(*tracer, picture_of(geometry)),
+          .scattered = of_chords(*tracer, geometry->bounds)};
+}
+
+PrimitiveCost cost_of(const std::array<Sample, 3>& samples) {
+  const Sample& many = samples.back();
+  PrimitiveCost cost{.build = many.build / many.primitives, .bytes = many.bytes / many.primitives};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    cost.counts[i] = samples[i].primitives;
+    cost.coherent[i] = samples[i].coherent;
+    cost.scattered[i] = samples[i].scattered;
+  }
   return cost;
 }
 
-TracerCost measure(const std::string& name, Precision precision, Build build, int threads) {
-  TracerCost cost{.tracer = name, .precision = precision, .build = build};
+void measure(TracerCost& cost, int threads) {
   Limits limits;
-  const auto sample = [&](const std::shared_ptr<const Geometry>& geometry) {
-    return measure(geometry, cost, threads, limits);
+  const auto among = [&](const auto& make, std::array<std::size_t, 3> sizes) {
+    std::array<Sample, 3> samples{};
+    for (std::size_t i = 0; i < sizes.size(); ++i) samples[i] = measure(make(sizes[i]), cost, threads, limits);
+    return cost_of(samples);
   };
-  constexpr int few_subdivisions = 1, many_subdivisions = few_subdivisions + doublings / 2;
-  cost.quadric = fit(sample(balls(32)), sample(balls(std::size_t{32} << doublings)));
-  cost.triangle = fit(sample(ball_mesh(few_subdivisions)), sample(ball_mesh(many_subdivisions)));
+  // Without a structure there can only be few.
+  const bool few = cost.build == Build::none;
+  cost.quadric = few ? among(balls, {1, 8, 32}) : among(balls, {8, 1 << 8, 1 << 13});
+  cost.triangle = few ? among(ball_mesh, {0, 1, 2}) : among(ball_mesh, {0, 2, 5});
+  if (!few) cost.instance = among(instances, {8, 1 << 8, 1 << 13});
   cost.triangle_roundoff = limits.triangle_roundoff;
   cost.quadric_roundoff = limits.quadric_roundoff;
-  return cost;
+}
+
+/// Before it builds anything: contexts and kernels of the GPU.
+double seconds_to_start(const TracerCost& of, int threads) {
+  const std::shared_ptr<const Geometry> one = ball_mesh(0);
+  const Stopwatch watch;
+  make_tracer(of.tracer, one, {.precision = of.precision, .threads = threads, .treelet = of.treelet});
+  return watch.seconds();
+}
+
+/// Those that need a GPU, or a renderer in software that takes its part; none where there is neither. Whoever is first
+/// starts the driver.
+std::vector<TracerCost> tracers_of_gpu(int threads) {
+  std::vector<TracerCost> costs{{.tracer = "grid"}};
+  for (const std::uint32_t treelet : {16, 64, 512}) costs.push_back({.tracer = "stream", .treelet = treelet});
+  try {
+    const double start = seconds_to_start(costs.front(), threads);
+    for (TracerCost& cost : costs) {
+      cost.start = start;
+      measure(cost, threads);
+    }
+  } catch (const Error&) {
+    return {};
+  }
+  return costs;
 }
 
 /// Tubes without ends, in no whole piece.
@@ -131,13 +186,15 @@ double seconds_each(const Mesh& mesh, const std::function<void()>& work) {
 DeviceMeasurements measure_device(int threads) {
   DeviceMeasurements device;
   const auto add = [&](const char* name, Precision precision, Build build = Build::thorough) {
-    device.tracers.push_back(measure(name, precision, build, threads));
+    measure(device.tracers.emplace_back(TracerCost{.tracer = name, .precision = precision, .build = build}), threads);
   };
   add("embree", Precision::fast);
   add("embree", Precision::robust);
   add("embree", Precision::robust, Build::quick);
   add("bvh", Precision::robust);
+  add("bvh", Precision::robust, Build::none);
   add("bvh", Precision::certified);
+  for (TracerCost& cost : tracers_of_gpu(threads)) device.tracers.push_back(std::move(cost));
   const Mesh ball = subdivided_sphere(7), tubes = open_tubes();
   device.recognise_whole = seconds_each(ball, [&] { recognise(ball, 0.01, Pieces::whole); });
   device.recognise_parts = seconds_each(tubes, [&] { recognise(tubes, 0.01, Pieces::parts); });

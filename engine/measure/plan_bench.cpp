@@ -40,8 +40,9 @@ PlanBench bench_plan(const Scene& scene, const PlanOptions& options, int threads
     const PictureCost plain = picture(scene, "auto", {.threads = threads});
     const Planned planned = plan_scene(scene, options);
     const TracingPlan& tracing = planned.tracing;
-    PictureCost cost = picture(planned.model.scene, tracing.tracer,
-                               {.precision = tracing.precision, .threads = threads, .build = tracing.build});
+    TracerOptions chosen = options_of(tracing);
+    chosen.threads = threads;
+    PictureCost cost = picture(planned.model.scene, tracing.tracer, chosen);
     cost.planning = planned.seconds;
     result.replaced = planned.model.replaced.size();
     if (run > 0) without.push_back(plain), with.push_back(cost);

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "engine/plan/plan.h"
 
 // What both halves of a plan reckon with; not for callers.
@@ -12,12 +9,6 @@ namespace rayengine {
 inline constexpr double arithmetic_share = 0.1, model_share = 0.97;
 // Another way than the usual one must be predicted to take no more than this of its time: predictions are rough.
 inline constexpr double worthwhile = 0.85;
-
-/// Seconds a ray among so many primitives.
-inline double per_ray(const PrimitiveCost& cost, bool coherent, double primitives) {
-  const double* c = coherent ? cost.coherent : cost.scattered;
-  return primitives > 1 ? c[0] + c[1] * std::log2(primitives) : c[0];
-}
 
 /// What is done without a plan: embree at robust.
 const TracerCost& usual_tracer(const DeviceMeasurements& device);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -11,21 +12,27 @@ namespace rayengine {
 
 /// What one kind of primitive costs a tracer. Times are for the whole machine: all its threads together.
 struct PrimitiveCost {
-  double build = 0;             ///< seconds a primitive
-  double bytes = 0;             ///< a primitive
-  double coherent[2] = {0, 0};  ///< seconds a ray: with one primitive, and more for each doubling of their number
-  double scattered[2] = {0, 0};
+  double build = 0;                               ///< seconds a primitive
+  double bytes = 0;                               ///< a primitive
+  std::array<double, 3> counts{};                 ///< primitives among which rays were measured: few, some and many
+  std::array<double, 3> coherent{}, scattered{};  ///< seconds a ray among so many
 };
 
 struct TracerCost {
   std::string tracer;
   Precision precision = Precision::robust;
   Build build = Build::thorough;
+  std::uint32_t treelet = 0;  ///< primitives that a treelet holds at most; of stream, 0 elsewhere
+  double start = 0;           ///< seconds before anything is built: a context, and kernels to compile
   double triangle_roundoff = 0, quadric_roundoff = 0;  ///< as in Limits
-  PrimitiveCost triangle, quadric;
+  PrimitiveCost triangle, quadric, instance;           ///< instances of something small
 };
 
 std::string_view to_string(Build build);
+
+/// Seconds a ray among so many primitives, between those that were measured and beyond: by doublings of their number
+/// or, without a structure, by their number. Fewer than were measured take as long as the fewest.
+double per_ray(const PrimitiveCost& cost, Build build, bool coherent, double primitives);
 
 /// What was measured of a machine, for plans to choose by.
 struct DeviceMeasurements {

@@ -52,7 +52,8 @@ class Options {
 
   /// To build so many triangles, and to ask the rays that an object as large as this may catch.
   double seconds(double triangles) const {
-    return triangles * usual_.triangle.build + rays() * per_ray(usual_.triangle, scene_.coherent, triangles);
+    return triangles * usual_.triangle.build +
+           rays() * per_ray(usual_.triangle, usual_.build, scene_.coherent, triangles);
   }
 
   double rays() const {
@@ -178,7 +179,7 @@ std::optional<Choice> instances(const Repeated& repeated, const SceneStatistics&
   constexpr double looking = 5e-8;  // seconds a triangle
   const TracerCost& usual = usual_tracer(device);
   const auto all = static_cast<double>(scene.triangles);
-  const double rays = scene.rays * per_ray(usual.triangle, scene.coherent, all);
+  const double rays = scene.rays * per_ray(usual.triangle, usual.build, scene.coherent, all);
   const double slower = tolerance.value == 0 ? instance_cost_bvh : instance_cost_embree;  // what will trace them
   const double without = all * usual.triangle.build + rays;
   const double with = (all - repeated.triangles) * usual.triangle.build + slower * rays + looking * all;

@@ -21,6 +21,11 @@ enum class Representation : std::uint8_t {
   instance,          ///< the same mesh as another object's, held once
 };
 
+struct Alternative {
+  std::string name;
+  double seconds = -1, error = -1;  ///< as in Choice
+};
+
 /// One decision, and the best alternative that it beat. Costs are seconds of the whole, errors in units of the
 /// tolerance; negative where nothing is predicted.
 struct Choice {
@@ -29,6 +34,7 @@ struct Choice {
   std::string instead;
   double instead_seconds = -1, instead_error = -1;
   std::string why;
+  std::vector<Alternative> others;  ///< that were weighed beside, the fastest first
 };
 
 /// What one object is to be represented by.
@@ -51,9 +57,10 @@ struct TracingPlan {
   std::string tracer;
   Precision precision = Precision::robust;
   Build build = Build::thorough;
-  double seconds = 0;  ///< predicted, to build and to trace
-  double bytes = 0;    ///< predicted, of the tracer
-  double error = 0;    ///< predicted, in units of the tolerance: of arithmetic alone
+  std::uint32_t treelet = 0;  ///< primitives that a treelet holds at most, where the GPU traces; else 0
+  double seconds = 0;         ///< predicted, to build and to trace
+  double bytes = 0;           ///< predicted, of the tracer
+  double error = 0;           ///< predicted, in units of the tolerance: of arithmetic alone
   std::vector<Choice> choices;
 };
 
@@ -70,8 +77,9 @@ double kept_allowance(double allowed);
 ModelPlan plan_model(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
                      const Effort& effort = {});
 
-/// `gpu`: whether the machine has one that is more than software; the hybrid then measures, and decides, as it goes.
-/// `replaced`: whether meshes were, which leaves arithmetic less of the tolerance.
+/// `gpu`: whether the machine has one that is more than software. Without, none is used; with, the hybrid takes the
+/// place of both its halves: it measures, and decides, as it goes. `replaced`: whether meshes were, which leaves
+/// arithmetic less of the tolerance.
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
                          bool gpu, bool replaced = false);
 

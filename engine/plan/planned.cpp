@@ -5,6 +5,10 @@
 
 namespace rayengine {
 
+TracerOptions options_of(const TracingPlan& plan) {
+  return {.precision = plan.precision, .build = plan.build, .treelet = plan.treelet};
+}
+
 Planned plan_scene(const Scene& scene, const PlanOptions& options) {
   const Stopwatch watch;
   const DeviceMeasurements& device = options.device ? *options.device : usual_device();

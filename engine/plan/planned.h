@@ -2,6 +2,7 @@
 
 #include "engine/plan/model.h"
 #include "engine/plan/plan.h"
+#include "engine/tracers.h"
 
 namespace rayengine {
 
@@ -22,6 +23,9 @@ struct Planned {
   std::vector<Choice> choices;  ///< of the model and of the tracing
   double seconds = 0;           ///< that planning took, the making of the model included
 };
+
+/// To make the tracer that a plan chose.
+TracerOptions options_of(const TracingPlan& plan);
 
 /// Plans the model, makes it, and plans its tracing. Throws Error on a tolerance that is negative or not a number.
 Planned plan_scene(const Scene& scene, const PlanOptions& options);

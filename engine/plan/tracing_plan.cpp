@@ -32,26 +32,44 @@ bool keeps_within(double error, const TracerCost& cost, const Tolerance& toleran
 struct Candidate {
   const TracerCost* cost;
   double seconds, error;
-  bool accurate;
+  bool usable, accurate;
   double handicap;  ///< the usual one is known never to be bad
 };
 
-/// Built quickly, Embree holds each kind of primitives apart: that is for scenes of one kind.
+bool is_on_gpu(const TracerCost& cost) { return cost.tracer == "stream" || cost.tracer == "grid"; }
+
+/// The hybrid's halves, in whose place it answers where there is a GPU.
+bool is_half(const TracerCost& cost) { return cost.tracer == "stream" || cost.tracer == "embree"; }
+
+/// As the less exact of both halves answers.
+double error_in_hybrid(const SceneStatistics& scene, TracerCost cost, const Tolerance& tolerance) {
+  constexpr double single_roundoff = 0x1p-24;
+  cost.triangle_roundoff = std::max(cost.triangle_roundoff, single_roundoff);
+  cost.quadric_roundoff = std::max(cost.quadric_roundoff, single_roundoff);
+  return predicted_error(scene, cost, tolerance);
+}
+
+/// Built quickly, Embree holds each kind of primitives apart: that is for scenes of one kind. Instances always have a
+/// BVH.
 bool may_be_built(const SceneStatistics& scene, const TracerCost& cost) {
+  if (cost.build == Build::none) return scene.instances == 0;
   return cost.build == Build::thorough || scene.primitives() == scene.triangles;
 }
 
-/// Those that are accurate enough, by their time; then the others, by their error.
+/// Those that are accurate enough, by their time; then the others, by their error; last those that the machine has not.
 std::vector<Candidate> candidates(const SceneStatistics& scene, const DeviceMeasurements& device,
-                                  const Tolerance& tolerance, bool replaced) {
+                                  const Tolerance& tolerance, bool gpu, bool replaced) {
   std::vector<Candidate> all;
   for (const TracerCost& cost : device.tracers) {
     if (!may_be_built(scene, cost)) continue;
-    const double error = predicted_error(scene, cost, tolerance);
-    all.push_back({&cost, predicted_seconds(scene, cost), error, keeps_within(error, cost, tolerance, replaced),
+    const double error =
+        gpu && is_half(cost) ? error_in_hybrid(scene, cost, tolerance) : predicted_error(scene, cost, tolerance);
+    all.push_back({&cost, predicted_seconds(scene, cost), error, gpu || !is_on_gpu(cost),
+                   keeps_within(error, cost, tolerance, replaced),
                    &cost == &usual_tracer(device) ? 1 : 1 / worthwhile});
   }
   std::ranges::stable_sort(all, [](const Candidate& a, const Candidate& b) {
+    if (a.usable != b.usable) return a.usable;
     if (a.accurate != b.accurate) return a.accurate;
     return a.accurate ? a.seconds * a.handicap < b.seconds * b.handicap : a.error < b.error;
   });
@@ -64,47 +82,64 @@ bool is_same_tracer(const TracerCost& a, const TracerCost& b) {
   return a.tracer == b.tracer && a.precision == b.precision;
 }
 
-/// The alternative is the fastest of those `among` the others.
-template <class Among>
-Choice choice(const char* subject, std::string (*name)(const TracerCost&), const std::vector<Candidate>& sorted,
-              Among&& among) {
-  const Candidate& best = sorted.front();
-  Choice c{subject, name(*best.cost), best.seconds, best.error, "", -1, -1, ""};
-  const Candidate* rival = nullptr;
-  for (const Candidate& other : std::span(sorted).subspan(1))
-    if (among(*other.cost) && (!rival || other.seconds * other.handicap < rival->seconds * rival->handicap))
-      rival = &other;
-  if (!rival) return c;
-  c.instead = name(*rival->cost);
-  c.instead_seconds = rival->seconds;
-  c.instead_error = rival->error;
-  return c;
-}
-
 /// Beside the fastest of the other tracers: what accuracy costs, or what speed would have cost.
 Choice tracer_choice(const std::vector<Candidate>& sorted, const Tolerance& tolerance) {
   const Candidate& best = sorted.front();
-  Choice c = choice("tracer and precision", name_of, sorted,
-                    [&](const TracerCost& other) { return !is_same_tracer(other, *best.cost); });
+  Choice c{"tracer and precision", name_of(*best.cost), best.seconds, best.error, "", -1, -1, ""};
+  const Candidate* rival = nullptr;
+  for (const Candidate& other : std::span(sorted).subspan(1))
+    if (other.usable && !is_same_tracer(*other.cost, *best.cost) &&
+        (!rival || other.seconds * other.handicap < rival->seconds * rival->handicap))
+      rival = &other;
+  if (rival) c.instead = name_of(*rival->cost), c.instead_seconds = rival->seconds, c.instead_error = rival->error;
   c.why = tolerance.value == 0 ? "a tolerance of 0 means exact: every answer is proven"
           : best.accurate      ? "the fastest whose arithmetic takes no more than its share of the tolerance"
                                : "none is known to keep within its share of the tolerance: the nearest to it";
   return c;
 }
 
-std::string structure_name(const TracerCost& cost) {
+std::string structure_name(const TracerCost& cost, std::uint64_t primitives) {
+  if (cost.tracer == "grid") return "a grid, on the GPU";
+  if (cost.tracer == "stream")
+    return primitives <= cost.treelet ? "none: all in one treelet, on the GPU"
+                                      : "treelets of " + std::to_string(cost.treelet) + ", on the GPU";
+  if (cost.build == Build::none) return "none: each ray meets all";
   const std::string whose = cost.tracer == "embree" ? "Embree's BVH" : "our BVH";
   return cost.build == Build::quick ? whose + ", built quickly" : whose;
 }
 
-Choice structure_choice(const std::vector<Candidate>& sorted) {
-  const TracerCost& best = *sorted.front().cost;
-  Choice c =
-      choice("structure", structure_name, sorted, [&](const TracerCost& other) { return is_same_tracer(other, best); });
-  c.why = best.build == Build::quick ? "there are too few rays to repay a thorough build"
-          : c.instead.empty()        ? "what the tracer builds for such a scene"
-                                     : "there are rays enough to repay a thorough build";
-  return c;
+/// Each with the fastest of the tracers that have it, and are as accurate as the best.
+std::vector<Alternative> other_structures(const std::vector<Candidate>& sorted, std::uint64_t primitives) {
+  const Candidate& best = sorted.front();
+  std::vector<Alternative> others{{structure_name(*best.cost, primitives)}};
+  for (const Candidate& other : std::span(sorted).subspan(1)) {
+    const std::string name = structure_name(*other.cost, primitives);
+    if (other.accurate != best.accurate) continue;
+    const auto known = std::ranges::find(others, name, &Alternative::name);
+    if (known == others.end())
+      others.push_back({name, other.seconds, other.error});
+    else if (other.seconds < known->seconds)
+      *known = {name, other.seconds, other.error};
+  }
+  others.erase(others.begin());
+  std::ranges::stable_sort(others, {}, &Alternative::seconds);
+  return others;
+}
+
+Choice structure_choice(const std::vector<Candidate>& sorted, std::uint64_t primitives) {
+  const Candidate& best = sorted.front();
+  std::vector<Alternative> others = other_structures(sorted, primitives);
+  const Alternative rival = others.empty() ? Alternative{} : others.front();
+  if (!others.empty()) others.erase(others.begin());
+  const char* why = best.cost->build == Build::quick  ? "there are too few rays to repay a thorough build"
+                    : best.cost->build == Build::none ? "there is so little that a look at all takes no longer"
+                    : rival.name.empty()              ? "what the tracer builds for such a scene"
+                                                      : "the least predicted time to build it and to ask all rays";
+  return {"structure",      structure_name(*best.cost, primitives),
+          best.seconds,     best.error,
+          rival.name,       rival.seconds,
+          rival.error,      why,
+          std::move(others)};
 }
 
 /// The variant that is run for the quadrics of one type.
@@ -124,6 +159,14 @@ Choice kernel_choice(const SceneStatistics& scene) {
   return {"kernels", list, -1, -1, "one for all quadrics", -1, -1, "what the quadrics of the scene need, and no more"};
 }
 
+/// What suits the device, where nothing was measured.
+std::uint32_t best_treelet(const std::vector<Candidate>& sorted) {
+  const Candidate* best = nullptr;
+  for (const Candidate& c : sorted)
+    if (c.cost->treelet > 0 && (!best || c.seconds < best->seconds)) best = &c;
+  return best ? best->cost->treelet : 0;
+}
+
 }  // namespace
 
 const TracerCost& usual_tracer(const DeviceMeasurements& device) {
@@ -134,12 +177,16 @@ const TracerCost& usual_tracer(const DeviceMeasurements& device) {
 }
 
 double predicted_seconds(const SceneStatistics& scene, const TracerCost& cost) {
-  const auto triangles = static_cast<double>(scene.triangles), quadrics = static_cast<double>(scene.quadrics),
-             all = static_cast<double>(scene.primitives());
-  const double share = all > 0 ? triangles / all : 0;
-  const double ray =
-      share * per_ray(cost.triangle, scene.coherent, all) + (1 - share) * per_ray(cost.quadric, scene.coherent, all);
-  return triangles * cost.triangle.build + quadrics * cost.quadric.build + scene.rays * ray;
+  const auto all = static_cast<double>(scene.primitives());
+  double seconds = cost.start;
+  const auto add = [&](std::uint64_t count, const PrimitiveCost& of) {
+    const auto n = static_cast<double>(count);
+    if (count > 0) seconds += n * of.build + scene.rays * n / all * per_ray(of, cost.build, scene.coherent, all);
+  };
+  add(scene.triangles, cost.triangle);
+  add(scene.quadrics, cost.quadric);
+  add(scene.instances, cost.instance);
+  return seconds;
 }
 
 double predicted_error(const SceneStatistics& scene, const TracerCost& cost, const Tolerance& tolerance) {
@@ -153,18 +200,20 @@ double predicted_error(const SceneStatistics& scene, const TracerCost& cost, con
 TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements& device, const Tolerance& tolerance,
                          bool gpu, bool replaced) {
   check(tolerance);
-  const std::vector<Candidate> sorted = candidates(scene, device, tolerance, replaced);
+  const std::vector<Candidate> sorted = candidates(scene, device, tolerance, gpu, replaced);
   const TracerCost& best = *sorted.front().cost;
   TracingPlan plan;
-  // The hybrid's processor half is embree; with a GPU it measures both and shares the work as it goes.
-  plan.tracer = gpu && best.tracer == "embree" ? "auto" : best.tracer;
+  // With a GPU the hybrid measures both of its halves, and shares the work as it goes.
+  plan.tracer = gpu && is_half(best) ? "auto" : best.tracer;
+  plan.treelet = gpu ? best_treelet(sorted) : 0;
   plan.precision = best.precision;
   plan.build = best.build;
   plan.seconds = sorted.front().seconds;
   plan.error = sorted.front().error;
   plan.bytes = static_cast<double>(scene.triangles) * best.triangle.bytes +
-               static_cast<double>(scene.quadrics) * best.quadric.bytes;
-  plan.choices = {tracer_choice(sorted, tolerance), structure_choice(sorted), kernel_choice(scene)};
+               static_cast<double>(scene.quadrics) * best.quadric.bytes +
+               static_cast<double>(scene.instances) * best.instance.bytes;
+  plan.choices = {tracer_choice(sorted, tolerance), structure_choice(sorted, scene.primitives()), kernel_choice(scene)};
   return plan;
 }
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "accel/tracer.h"
 #include "engine/scene/scene.h"
+#include "engine/tracers.h"
 
 namespace rayengine::cli {
 
@@ -83,13 +83,13 @@ struct LoadedScene {
 /// Loads, and says the scene's notes on stderr, each once.
 LoadedScene load(const std::filesystem::path& file, const Common& common);
 
-/// A tracer by name; what it has to say is noted, now and later.
+/// A tracer by name; what it has to say is noted, now and later. Threads and GPU are those of `common`.
 struct MadeTracer {
   std::unique_ptr<Tracer> tracer;
   std::string said;  ///< while it was made
 };
-MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
-                       const Common& common, Build build = Build::thorough);
+MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, TracerOptions options,
+                       const Common& common);
 
 /// One line on stderr, unless quiet: `note: ...`.
 void note(const Common& common, const std::string& text);

@@ -136,18 +136,20 @@ LoadedScene load(const std::filesystem::path& file, const Common& common) {
   return loaded;
 }
 
-MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, Precision precision,
-                       const Common& common, Build build) {
+MadeTracer make_tracer(const std::string& name, std::shared_ptr<const Geometry> geometry, TracerOptions options,
+                       const Common& common) {
   // Who leaves the choice to us is told what it was on demand, and in --stats; what goes wrong later is told at once.
   const bool tell = name != "auto" || common.verbosity == Verbosity::verbose;
   const auto made = std::make_shared<std::atomic<bool>>(false);
   std::string said;
-  const auto say = [=, &common, &said](const std::string& text) {
+  options.threads = common.threads;
+  options.gpu = common.gpu;
+  options.say = [=, &common, &said](const std::string& text) {
     const bool later = *made;
     if (!later) said = text;
     if (later || tell) note(common, text);
   };
-  auto tracer = rayengine::make_tracer(name, std::move(geometry), {precision, common.threads, common.gpu, say, build});
+  auto tracer = rayengine::make_tracer(name, std::move(geometry), options);
   *made = true;
   return {std::move(tracer), said};
 }

@@ -58,7 +58,8 @@ void add_plan(CLI::App& app, Action& action) {
   add_scene(sub, options->scene);
   add_planning(sub, options->planning);
   add_size(sub, options->size, "the scene's");
-  sub->add_flag("--measure", options->measure, "First measure this machine (seconds), and keep that for all plans");
+  sub->add_flag("--measure", options->measure,
+                "First measure this machine (half a minute), and keep that for all plans");
   sub->add_option("--json", options->json, "The same as JSON")->type_name("FILE");
   sub->callback([options, &action] {
     check(*options);

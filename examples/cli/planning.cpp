@@ -56,7 +56,10 @@ std::string choice_text(const Choice& c, const char* unit) {
                                  error_text(c.error, unit), c.instead.empty() ? "-" : c.instead);
   if (c.instead_seconds >= 0)
     text += fmt::format(" ({}, {})", cost_text(c.instead_seconds), error_text(c.instead_error, unit));
-  return text + fmt::format("\n  because {}\n", c.why);
+  text += fmt::format("\n  because {}\n", c.why);
+  for (const Alternative& other : c.others)
+    text += fmt::format("{}{} {}", &other == &c.others.front() ? "  or " : ", ", other.name, cost_text(other.seconds));
+  return c.others.empty() ? text : text + '\n';
 }
 
 std::string replaced_text(const Replacement& r) {
@@ -68,7 +71,13 @@ std::string replaced_text(const Replacement& r) {
                      name_of(r.representation), count_text(r.triangles), after, r.distance);
 }
 
+Json to_json(const Alternative& a) {
+  return {{"what", a.name}, {"seconds", number(a.seconds)}, {"error", number(a.error)}};
+}
+
 Json to_json(const Choice& c) {
+  Json others = Json::array();
+  for (const Alternative& other : c.others) others.push_back(to_json(other));
   return {{"what", c.subject},
           {"chosen", c.chosen},
           {"seconds", number(c.seconds)},
@@ -76,6 +85,7 @@ Json to_json(const Choice& c) {
           {"instead_of", c.instead},
           {"instead_seconds", number(c.instead_seconds)},
           {"instead_error", number(c.instead_error)},
+          {"others", others},
           {"why", c.why}};
 }
 
@@ -138,10 +148,9 @@ PlannedScene::PlannedScene(const PlanningOptions& options, Scene scene, double r
 
 MadeTracer PlannedScene::make_tracer(const std::string& tracer, std::optional<Precision> precision) const {
   const bool free = plan_ && tracer == "auto" && !precision;
+  if (free) return cli::make_tracer(plan_->tracing.tracer, scene().geometry, options_of(plan_->tracing), common_);
   const Precision usual = plan_ && *options_.tolerance == 0 ? Precision::certified : Precision::robust;
-  return cli::make_tracer(free ? plan_->tracing.tracer : tracer, scene().geometry,
-                          free ? plan_->tracing.precision : precision.value_or(usual), common_,
-                          free ? plan_->tracing.build : Build::thorough);
+  return cli::make_tracer(tracer, scene().geometry, {.precision = precision.value_or(usual)}, common_);
 }
 
 Json PlannedScene::verify(Tracer& tracer, const std::vector<Ray>& rays) const {
@@ -184,6 +193,7 @@ Json PlannedScene::json() const {
           {"tracer", plan_->tracing.tracer},
           {"precision", to_string(plan_->tracing.precision)},
           {"build", to_string(plan_->tracing.build)},
+          {"treelet", plan_->tracing.treelet},
           {"predicted_s", plan_->tracing.seconds},
           {"predicted_bytes", plan_->tracing.bytes},
           {"predicted_error", plan_->tracing.error},

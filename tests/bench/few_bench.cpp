@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "accel/random.h"
 #include "accel/stopwatch.h"
@@ -16,7 +17,7 @@ namespace {
 
 using namespace rayengine;
 
-constexpr int runs = 150;
+constexpr int runs = 20;
 
 glm::dvec3 somewhere(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
 
@@ -52,12 +53,14 @@ double nanoseconds(Tracer& tracer, const std::vector<Ray>& rays, RayClass ray_cl
 
 int main() {
   for (const bool triangles : {false, true})
-    for (const char* name : {"embree", "bvh"})
+    for (const char* name : {"embree", "bvh", "none"})
       for (const std::size_t count : {1, 2, 4, 8, 16, 32, 64}) {
         const auto geometry = scattered(count, triangles);
-        const auto tracer = make_tracer(name, geometry, {.threads = 1});
+        const bool none = std::strcmp(name, "none") == 0;
+        const auto tracer =
+            make_tracer(none ? "bvh" : name, geometry, {.threads = 1, .build = none ? Build::none : Build::thorough});
         Camera camera;
-        camera.size = {64, 64};
+        camera.size = {256, 256};
         const std::vector<Ray> primary = primary_rays(framing_camera(geometry->bounds, camera));
         const std::vector<Ray> random = random_rays(geometry->bounds, primary.size());
         std::printf("%-6s %3zu %-9s %6.1f primary %6.1f random\n", name, count, triangles ? "triangles" : "balls",

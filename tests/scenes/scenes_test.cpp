@@ -162,8 +162,7 @@ TEST_P(Scenes, KeepToATolerance) {
                                                  .tools = cached_mesh_tools(),
                                                  .device = &device});
       const Scene& model = planned.model.scene;
-      const auto tracer = make_tracer(planned.tracing.tracer, model.geometry,
-                                      {.precision = planned.tracing.precision, .build = planned.tracing.build});
+      const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, options_of(planned.tracing));
       const Verification found = verify(scene, model, *tracer, tolerance, rays);
       std::printf("%.1f pixels: %zu objects replaced, %llu of %llu rays agree beside, at most %.2g off\n", pixels,
                   planned.model.replaced.size(), static_cast<unsigned long long>(found.beside),

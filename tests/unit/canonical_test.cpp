@@ -135,8 +135,7 @@ TEST(Canonical, ExactArithmeticSeesTheSame) {
   for (const Tolerance& tolerance : {exact, tenth_of_pixel}) {
     const Planned planned = plan_scene(scene, {.tolerance = tolerance, .rays = 1e6});
     EXPECT_EQ(general_left(planned.model.scene), tolerance.value == 0 ? 2u : 1u);
-    const auto tracer = make_tracer(planned.tracing.tracer, planned.model.scene.geometry,
-                                    {.precision = planned.tracing.precision, .build = planned.tracing.build});
+    const auto tracer = make_tracer(planned.tracing.tracer, planned.model.scene.geometry, options_of(planned.tracing));
     const Verification found = verify(scene, planned.model.scene, *tracer, tolerance, rays);
     EXPECT_EQ(found.broken, 0u) << tolerance.value;
     EXPECT_GT(found.hits, 1000u);

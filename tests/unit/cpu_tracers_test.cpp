@@ -12,22 +12,24 @@
 namespace rayengine {
 namespace {
 
-enum class Kind { embree, quick_embree, bvh };
+enum class Kind { embree, quick_embree, bvh, loop };
 
-/// What both tracers of the processor promise at `robust`, however they are built.
+/// What all tracers of the processor promise at `robust`, however they are built.
 class CpuTracer : public testing::TestWithParam<Kind> {
  protected:
   static std::unique_ptr<Tracer> tracer_of(std::shared_ptr<const Geometry> geometry) {
     if (GetParam() == Kind::bvh) return make_bvh_tracer(std::move(geometry), Precision::robust);
+    if (GetParam() == Kind::loop) return make_loop_tracer(std::move(geometry));
     const Build build = GetParam() == Kind::quick_embree ? Build::quick : Build::thorough;
     return make_embree_tracer(std::move(geometry), Precision::robust, build);
   }
   static std::unique_ptr<Tracer> tracer_of(GeometryBuilder& builder) { return tracer_of(builder.build()); }
 };
 std::string name_of(const testing::TestParamInfo<Kind>& info) {
-  return std::array{"embree", "quick_embree", "bvh"}[static_cast<std::size_t>(info.param)];
+  return std::array{"embree", "quick_embree", "bvh", "loop"}[static_cast<std::size_t>(info.param)];
 }
-INSTANTIATE_TEST_SUITE_P(All, CpuTracer, testing::Values(Kind::embree, Kind::quick_embree, Kind::bvh), name_of);
+INSTANTIATE_TEST_SUITE_P(All, CpuTracer, testing::Values(Kind::embree, Kind::quick_embree, Kind::bvh, Kind::loop),
+                         name_of);
 
 Hit closest(Tracer& tracer, const Ray& ray, RayClass ray_class = RayClass::primary) {
   Hit hit;

@@ -131,6 +131,79 @@ TEST(Plan, BuildsQuicklyForFewRaysAmongTriangles) {
   EXPECT_EQ(planned().build, Build::thorough);
 }
 
+/// A GPU by numbers made up: its structures are shown everywhere, and taken where there is one.
+DeviceMeasurements with_gpu(const char* tracer, double per_ray) {
+  DeviceMeasurements device = usual_device();
+  for (const std::uint32_t treelet : {0u, 64u, 16u})
+    if ((treelet == 0) == (std::string_view(tracer) == "grid")) {
+      TracerCost& cost = device.tracers.emplace_back();
+      cost = {.tracer = tracer, .treelet = treelet, .triangle_roundoff = 0x1p-24, .quadric_roundoff = 0x1p-24};
+      for (PrimitiveCost* p : {&cost.triangle, &cost.quadric}) p->coherent.fill(per_ray * (1 + treelet));
+    }
+  return device;
+}
+
+TEST(Plan, TakesAStructureOfTheGpuWhereItIsThereAndFaster) {
+  const SceneStatistics scene = scene_of({far_mesh(100000, 0.2)});
+  const DeviceMeasurements grid = with_gpu("grid", 1e-12), stream = with_gpu("stream", 1e-12);
+  EXPECT_EQ(plan_tracing(scene, grid, half_pixel, true).tracer, "grid");
+  EXPECT_EQ(plan_tracing(scene, grid, half_pixel, false).tracer, "embree");
+  EXPECT_EQ(plan_tracing(scene, with_gpu("grid", 1), half_pixel, true).tracer, "auto");
+  const TracingPlan hybrid = plan_tracing(scene, stream, half_pixel, true);
+  EXPECT_EQ(hybrid.tracer, "auto");
+  EXPECT_EQ(hybrid.treelet, 16u);
+  EXPECT_EQ(hybrid.choices.at(1).chosen, "treelets of 16, on the GPU");
+  EXPECT_EQ(plan_tracing(scene, usual_device(), half_pixel, true).treelet, 0u);
+}
+
+TEST(Plan, SaysWhatOtherStructuresWouldTake) {
+  SceneStatistics scene = scene_of({far_mesh(100000, 0.2)});
+  const auto others = [&] {
+    const Choice c = plan_tracing(scene, with_gpu("stream", 1), half_pixel, false).choices.at(1);
+    std::vector<Alternative> all = c.others;
+    all.insert(all.begin(), {c.instead, c.instead_seconds, c.instead_error});
+    return all;
+  };
+  EXPECT_EQ(others().back().name, "treelets of 64, on the GPU");
+  EXPECT_TRUE(std::ranges::is_sorted(others(), {}, &Alternative::seconds));
+  scene.triangles = 10;
+  EXPECT_EQ(others().back().name, "none: all in one treelet, on the GPU");
+}
+
+/// A ray may be answered by the half that computes in single precision.
+TEST(Plan, KnowsThatTheHybridIsAsExactAsTheLessExactHalf) {
+  const ObjectStatistics ball{.radius = 1, .thickness = 1, .distance = 1e5};
+  const TracingPlan alone = plan_tracing(scene_of({ball}), usual_device(), {1e-3}, false),
+                    hybrid = plan_tracing(scene_of({ball}), usual_device(), {1e-3}, true);
+  EXPECT_EQ(alone.tracer, "embree");
+  EXPECT_EQ(hybrid.tracer, "bvh");
+  EXPECT_LT(hybrid.error, 1e-4);
+}
+
+/// Where scattered rays meet a handful, boxes cost more than they spare.
+TEST(Plan, NeedsNoStructureForAHandful) {
+  const auto planned = [](std::size_t balls, bool coherent) {
+    SceneStatistics scene = scene_of(std::vector(balls, ObjectStatistics{.radius = 1, .thickness = 1, .distance = 10}));
+    scene.coherent = coherent;
+    return plan_tracing(scene, usual_device(), half_pixel, false);
+  };
+  EXPECT_EQ(planned(3, false).build, Build::none);
+  EXPECT_EQ(planned(3, false).tracer, "bvh");
+  EXPECT_EQ(planned(3, true).build, Build::thorough);
+  EXPECT_EQ(planned(300, false).build, Build::thorough);
+}
+
+TEST(Device, ReadsTimesBetweenThoseThatWereMeasured) {
+  const PrimitiveCost cost{.counts = {8, 64, 512}, .coherent = {3, 6, 12}, .scattered = {1, 2, 3}};
+  const auto coherent = [&](Build build, double primitives) { return per_ray(cost, build, true, primitives); };
+  EXPECT_DOUBLE_EQ(coherent(Build::thorough, 1), 3);
+  EXPECT_DOUBLE_EQ(coherent(Build::thorough, 16), 4);
+  EXPECT_DOUBLE_EQ(coherent(Build::thorough, 64), 6);
+  EXPECT_DOUBLE_EQ(coherent(Build::thorough, 1024), 14);
+  EXPECT_DOUBLE_EQ(coherent(Build::none, 36), 4.5);
+  EXPECT_DOUBLE_EQ(per_ray(cost, Build::thorough, false, 512), 3);
+}
+
 TEST(Plan, EveryChoiceSaysWhy) {
   SceneStatistics scene = scene_of({far_mesh(100000, 0.2), far_mesh(10, 1)});
   scene.meshes[0].ball_share = 1;
@@ -214,8 +287,7 @@ TEST(PlannedScene, PutsBallsInPlaceOfTriangles) {
   EXPECT_EQ(model.geometry->quadrics.size(), 28u);
   EXPECT_EQ(model.object_numbers.front(), 0u);
   EXPECT_EQ(model.object_numbers.back(), 1u);
-  const auto tracer = make_tracer(planned.tracing.tracer, model.geometry,
-                                  {.precision = planned.tracing.precision, .build = planned.tracing.build});
+  const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, options_of(planned.tracing));
   const Verification found = verify(scene, model, *tracer, half_pixel, random_camera_rays(scene.camera, 20000));
   EXPECT_EQ(found.broken, 0u);
   EXPECT_GT(found.hits, 10000u);
@@ -288,8 +360,7 @@ TEST(PlannedScene, HoldsMeshesOnceThatRepeat) {
     ASSERT_EQ(planned.model.replaced.size(), 1 + turned);
     EXPECT_EQ(model.geometry->instances.size(), 2 + turned);
     EXPECT_EQ(model.geometry->groups.size(), 1u);
-    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry,
-                                    {.precision = planned.tracing.precision, .build = planned.tracing.build});
+    const auto tracer = make_tracer(planned.tracing.tracer, model.geometry, options_of(planned.tracing));
     const Verification found = verify(scene, model, *tracer, tolerance, random_camera_rays(scene.camera, 20000));
     EXPECT_EQ(found.broken, 0u) << tolerance.value;
     EXPECT_GT(found.hits, 1000u);
@@ -301,8 +372,7 @@ TEST(PlannedScene, AtZeroIsTheSceneItself) {
   const Planned planned = plan_scene(scene, {.tolerance = exact, .rays = 1e6});
   EXPECT_EQ(planned.model.scene.geometry, scene.geometry);
   EXPECT_TRUE(planned.model.replaced.empty());
-  const auto tracer = make_tracer(planned.tracing.tracer, scene.geometry,
-                                  {.precision = planned.tracing.precision, .build = planned.tracing.build});
+  const auto tracer = make_tracer(planned.tracing.tracer, scene.geometry, options_of(planned.tracing));
   const Verification found = verify(scene, scene, *tracer, exact, random_camera_rays(scene.camera, 5000));
   EXPECT_EQ(found.broken, 0u);
 }
