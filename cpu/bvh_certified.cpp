@@ -25,6 +25,13 @@ struct Nearest {
   }
 };
 
+bool may_certify(const BvhScene& scene, const Ray& ray) {
+  return scene.moderate() && is_valid(ray) && is_moderate(ray);
+}
+
+/// Where what was found ends at most.
+double end_of(const BvhAnswer& answer) { return answer.part == BvhAnswer::miss ? infinity : answer.t + answer.error; }
+
 class CertifiedBvh final : public Tracer {
  public:
   explicit CertifiedBvh(std::shared_ptr<const Geometry> geometry, const Stopwatch& watch = {})
@@ -43,11 +50,8 @@ class CertifiedBvh final : public Tracer {
   HitLists all(std::span<const Ray> rays) override;
 
  private:
-  bool may_certify(const Ray& ray) const { return scene_.moderate() && is_valid(ray) && is_moderate(ray); }
-
-  Hit nearest(const Ray& ray, const BvhAnswer& answer) const;
-  bool nearest_instance(const Ray& ray, Nearest& nearest) const;
-  std::uint32_t any_instance(const Ray& ray) const;
+  void add_instances(std::span<const Ray> rays, std::span<const BvhAnswer> answers, std::span<Hit> hits) const;
+  void add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const;
   bool collect(const Ray& ray, std::vector<Hit>& hits) const;
   std::vector<Hit> all(const Ray& ray) const;
 
@@ -107,30 +111,80 @@ std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
   return hits;
 }
 
-/// Whether it could be told.
-bool CertifiedBvh::nearest_instance(const Ray& ray, Nearest& nearest) const {
-  bool sure = true;
-  instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, Ray local) {
-    local.tmax = std::min(ray.tmax, nearest.high);
-    sure = sure && group.moderate() && is_moderate(local);
-    if (!sure) return -infinity;
-    BvhFound inside{&group.geometry(), &instance};
-    const RayError error = placing_error(ray, instance.to_group);
-    bvh_queries().certain_closest(group.job(), &local, 1, error, &inside.answer);
-    if (inside.answer.part == BvhAnswer::miss && !inside.answer.unsure) return local.tmax;
-    sure = !inside.answer.unsure && inside.answer.t + inside.answer.error < nearest.low;
-    if (sure) nearest.set(inside);
-    return sure ? nearest.high : -infinity;
-  });
-  return sure;
-}
+/// A group's rays with their errors; of the others double precision cannot tell.
+struct CertainRays : PlacedRays {
+  void place(const Meeting& meeting, std::span<const Ray> asked, std::span<const double> ends) {
+    PlacedRays::place(meeting, asked, ends, may_certify);
+    for (std::size_t k = 0; k < count; ++k) errors[k] = placing_error(asked[number[k]], meeting.instance.to_group);
+  }
 
-Hit CertifiedBvh::nearest(const Ray& ray, const BvhAnswer& answer) const {
-  Nearest nearest;
-  if (answer.part != BvhAnswer::miss) nearest.set({&scene_.geometry(), nullptr, answer});
-  if (answer.unsure || (!instances_.empty() && !nearest_instance(ray, nearest)))
-    return exact_closest(ray, nearest.high);
-  return nearest.found.geometry ? hit_of(ray, nearest.found) : Hit{};
+  EachRay<RayError> errors;
+};
+
+/// The nearest hits of at most InstanceWalk::most_rays rays, while they can be told.
+class CertainNearest {
+ public:
+  CertainNearest(const Geometry& geometry, std::span<const Ray> rays, std::span<const BvhAnswer> answers)
+      : rays_(rays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (answers[i].part != BvhAnswer::miss) nearest_[i].set({&geometry, nullptr, answers[i]});
+      ends_[i] = answers[i].unsure ? -infinity : std::min(rays[i].tmax, nearest_[i].high);
+      sure_[i] = !answers[i].unsure;
+    }
+  }
+
+  std::span<const double> ends() const { return std::span(ends_).first(rays_.size()); }
+
+  void meet(const Meeting& meeting) {
+    placed_.place(meeting, rays_, ends_);
+    bvh_queries().certain_closest(meeting.group.job(), placed_.rays.data(), placed_.count, placed_.errors.data(),
+                                  answers_.data());
+    for (std::size_t k = 0; k < placed_.count; ++k)
+      take(placed_.number[k], {&meeting.group.geometry(), &meeting.instance, answers_[k]});
+    for (std::size_t k = 0; k < placed_.other_count; ++k) give_up(placed_.other[k]);
+  }
+
+  /// Null where it could not be told.
+  const Nearest* operator[](std::size_t i) const { return sure_[i] ? &nearest_[i] : nullptr; }
+  double end(std::size_t i) const { return nearest_[i].high; }
+
+ private:
+  void take(std::size_t i, const BvhFound& found) {
+    const BvhAnswer& a = found.answer;
+    if (a.part == BvhAnswer::miss && !a.unsure) return;
+    if (a.unsure || !(a.t + a.error < nearest_[i].low)) return give_up(i);
+    nearest_[i].set(found);
+    ends_[i] = std::min(rays_[i].tmax, nearest_[i].high);
+  }
+
+  void give_up(std::size_t i) {
+    sure_[i] = false;
+    ends_[i] = -infinity;
+  }
+
+  std::span<const Ray> rays_;
+  CertainRays placed_;
+  PlacedRays::EachRay<BvhAnswer> answers_;
+  PlacedRays::EachRay<Nearest> nearest_;
+  PlacedRays::EachRay<double> ends_;
+  PlacedRays::EachRay<bool> sure_;
+};
+
+/// Brings in what is met of instances.
+void CertifiedBvh::add_instances(std::span<const Ray> rays, std::span<const BvhAnswer> answers,
+                                 std::span<Hit> hits) const {
+  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
+    const auto mine = rays.subspan(first, count);
+    CertainNearest nearest(scene_.geometry(), mine, answers.subspan(first, count));
+    instances_.for_met(mine, nearest.ends(), [&](const Meeting& meeting) { nearest.meet(meeting); });
+    for (std::size_t i = 0; i < count; ++i) {
+      Hit& hit = hits[first + i];
+      if (!nearest[i])
+        hit = exact_closest(mine[i], nearest.end(i));
+      else if (nearest[i]->found.instance)
+        hit = hit_of(mine[i], nearest[i]->found);
+    }
+  });
 }
 
 void CertifiedBvh::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass) {
@@ -139,29 +193,39 @@ void CertifiedBvh::closest(std::span<const Ray> rays, std::span<Hit> hits, RayCl
     const auto mine = rays.subspan(begin, end - begin);
     BvhAnswer answers[longest_run];
     const auto trace = [&](std::size_t first, std::size_t last) {
-      bvh_queries().certain_closest(scene_.job(), &mine[first], last - first, {}, answers);
+      bvh_queries().certain_closest(scene_.job(), &mine[first], last - first, nullptr, answers);
       store_hits(scene_.geometry(), &mine[first], std::span(answers, last - first), &hits[begin + first]);
+      if (!instances_.empty())
+        return add_instances(mine.subspan(first, last - first), answers, hits.subspan(begin + first, last - first));
       for (std::size_t i = first; i < last; ++i)
-        if (answers[i - first].unsure || !instances_.empty()) hits[begin + i] = nearest(mine[i], answers[i - first]);
+        if (answers[i - first].unsure) hits[begin + i] = exact_closest(mine[i], end_of(answers[i - first]));
     };
     for_runs(
-        mine, [&](const Ray& ray) { return may_certify(ray); }, trace,
+        mine, [&](const Ray& ray) { return may_certify(scene_, ray); }, trace,
         [&](std::size_t i) { hits[begin + i] = exact_closest(mine[i]); });
   });
 }
 
-/// status_hit, status_miss, or status_unsure.
-std::uint32_t CertifiedBvh::any_instance(const Ray& ray) const {
-  std::uint32_t result = status_miss;
-  instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, const Ray& local) {
-    if (result == status_hit) return -infinity;
-    std::uint32_t status = status_unsure;
-    if (group.moderate() && is_moderate(local))
-      bvh_queries().certain_any(group.job(), &local, 1, placing_error(ray, instance.to_group), &status);
-    if (status != status_miss) result = status;
-    return result == status_hit ? -infinity : ray.tmax;
+/// Where a hit or miss was not found for sure: status_hit, status_miss, or status_unsure.
+void CertifiedBvh::add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
+  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
+    const auto mine = rays.subspan(first, count);
+    const auto answers = status.subspan(first, count);
+    double ends[InstanceWalk::most_rays];
+    std::uint32_t met[InstanceWalk::most_rays];
+    CertainRays placed;
+    for (std::size_t i = 0; i < count; ++i) ends[i] = answers[i] == status_miss ? mine[i].tmax : -infinity;
+    instances_.for_met(mine, std::span(ends).first(count), [&](const Meeting& meeting) {
+      placed.place(meeting, mine, ends);
+      bvh_queries().certain_any(meeting.group.job(), placed.rays.data(), placed.count, placed.errors.data(), met);
+      for (std::size_t k = 0; k < placed.count; ++k) {
+        const std::uint32_t i = placed.number[k];
+        if (met[k] != status_miss) answers[i] = met[k];
+        if (met[k] == status_hit) ends[i] = -infinity;
+      }
+      for (std::size_t k = 0; k < placed.other_count; ++k) answers[placed.other[k]] = status_unsure;
+    });
   });
-  return result;
 }
 
 void CertifiedBvh::any(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass) {
@@ -170,14 +234,13 @@ void CertifiedBvh::any(std::span<const Ray> rays, std::span<std::uint32_t> statu
     const auto mine = rays.subspan(begin, end - begin);
     const auto answers = status.subspan(begin, end - begin);
     const auto trace = [&](std::size_t first, std::size_t last) {
-      bvh_queries().certain_any(scene_.job(), &mine[first], last - first, {}, &answers[first]);
-      for (std::size_t i = first; i < last; ++i) {
-        if (answers[i] == status_miss && !instances_.empty()) answers[i] = any_instance(mine[i]);
+      bvh_queries().certain_any(scene_.job(), &mine[first], last - first, nullptr, &answers[first]);
+      if (!instances_.empty()) add_instances(mine.subspan(first, last - first), answers.subspan(first, last - first));
+      for (std::size_t i = first; i < last; ++i)
         if (answers[i] == status_unsure) answers[i] = exact_any(mine[i]);
-      }
     };
     for_runs(
-        mine, [&](const Ray& ray) { return may_certify(ray); }, trace,
+        mine, [&](const Ray& ray) { return may_certify(scene_, ray); }, trace,
         [&](std::size_t i) { answers[i] = exact_any(mine[i]); });
   });
 }
@@ -205,7 +268,7 @@ bool CertifiedBvh::collect(const Ray& ray, std::vector<Hit>& hits) const {
 
 std::vector<Hit> CertifiedBvh::all(const Ray& ray) const {
   std::vector<Hit> hits;
-  if (!may_certify(ray) || !collect(ray, hits)) return exact_all(ray);
+  if (!may_certify(scene_, ray) || !collect(ray, hits)) return exact_all(ray);
   sort_hits(hits);
   const auto overlap = [](const Hit& a, const Hit& b) { return !(a.t + a.error < b.t - b.error); };
   const bool unsure = std::adjacent_find(hits.begin(), hits.end(), overlap) != hits.end();

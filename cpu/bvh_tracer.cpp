@@ -1,5 +1,6 @@
 #include "cpu/bvh_tracer.h"
 
+#include <array>
 #include <tuple>
 
 #include "accel/stopwatch.h"
@@ -30,8 +31,8 @@ class BvhTracer final : public Tracer {
   HitLists all(std::span<const Ray> rays) override;
 
  private:
-  void add_instances(const Ray& ray, Hit& hit) const;
-  bool any_instance(const Ray& ray) const;
+  void add_instances(std::span<const Ray> rays, std::span<Hit> hits) const;
+  void add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const;
   std::vector<Hit> all(const Ray& ray) const;
 
   BvhScene scene_;
@@ -44,29 +45,78 @@ bool comes_first(const Hit& a, const Hit& b) {
   return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
 }
 
+bool may_trace(const BvhScene&, const Ray& ray) { return is_valid(ray); }
+
+/// The nearest hits of at most InstanceWalk::most_rays rays, as instances bring them in.
+class NearestOfInstances {
+ public:
+  NearestOfInstances(std::span<const Ray> rays, std::span<Hit> hits) : rays_(rays), hits_(hits) {
+    for (std::size_t i = 0; i < rays.size(); ++i) ends_[i] = std::min(rays[i].tmax, hits[i].t);
+  }
+
+  std::span<const double> ends() const { return std::span(ends_).first(rays_.size()); }
+
+  void meet(const Meeting& meeting) {
+    placed_.place(meeting, rays_, ends_, may_trace);
+    bvh_queries().closest(meeting.group.job(), placed_.rays.data(), placed_.count, answers_.data());
+    for (std::size_t k = 0; k < placed_.count; ++k)
+      if (answers_[k].part != BvhAnswer::miss)
+        take(placed_.number[k], {&meeting.group.geometry(), &meeting.instance, answers_[k]});
+  }
+
+  /// Makes hits of what was found.
+  void store() {
+    for (std::size_t i = 0; i < rays_.size(); ++i) store(i);
+  }
+
+ private:
+  void store(std::size_t i) {
+    if (found_[i].geometry) hits_[i] = hit_of(rays_[i], found_[i]);
+    found_[i].geometry = nullptr;
+  }
+
+  void take(std::size_t i, const BvhFound& found) {
+    if (found.answer.t == ends_[i]) {  // rare: ids decide
+      store(i);
+      if (!comes_first(hit_of(rays_[i], found), hits_[i])) return;
+    }
+    found_[i] = found;
+    ends_[i] = found.answer.t;
+  }
+
+  std::span<const Ray> rays_;
+  std::span<Hit> hits_;
+  PlacedRays placed_;
+  PlacedRays::EachRay<BvhAnswer> answers_;
+  PlacedRays::EachRay<double> ends_;
+  PlacedRays::EachRay<BvhFound> found_;
+};
+
 /// Brings in what is met of instances.
-void BvhTracer::add_instances(const Ray& ray, Hit& hit) const {
-  instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, Ray local) {
-    local.tmax = std::min(local.tmax, hit.t);
-    if (!is_valid(local)) return hit.t;
-    BvhFound inside{&group.geometry(), &instance};
-    bvh_queries().closest(group.job(), &local, 1, &inside.answer);
-    if (inside.answer.part == BvhAnswer::miss) return hit.t;
-    const Hit other = hit_of(ray, inside);
-    if (comes_first(other, hit)) hit = other;
-    return hit.t;
+void BvhTracer::add_instances(std::span<const Ray> rays, std::span<Hit> hits) const {
+  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
+    const auto mine = rays.subspan(first, count);
+    NearestOfInstances nearest(mine, hits.subspan(first, count));
+    instances_.for_met(mine, nearest.ends(), [&](const Meeting& meeting) { nearest.meet(meeting); });
+    nearest.store();
   });
 }
 
-bool BvhTracer::any_instance(const Ray& ray) const {
-  bool any = false;
-  instances_.for_met(ray, [&](const Instance&, const BvhScene& group, const Ray& local) {
-    std::uint32_t status = status_miss;
-    if (!any && is_valid(local)) bvh_queries().any(group.job(), &local, 1, &status);
-    any |= status == status_hit;
-    return any ? -infinity : ray.tmax;
+void BvhTracer::add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
+  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
+    const auto mine = rays.subspan(first, count);
+    const auto answers = status.subspan(first, count);
+    double ends[InstanceWalk::most_rays];
+    std::uint32_t met[InstanceWalk::most_rays];
+    PlacedRays placed;
+    for (std::size_t i = 0; i < count; ++i) ends[i] = answers[i] == status_miss ? mine[i].tmax : -infinity;
+    instances_.for_met(mine, std::span(ends).first(count), [&](const Meeting& meeting) {
+      placed.place(meeting, mine, ends, may_trace);
+      bvh_queries().any(meeting.group.job(), placed.rays.data(), placed.count, met);
+      for (std::size_t k = 0; k < placed.count; ++k)
+        if (met[k] == status_hit) answers[placed.number[k]] = status_hit, ends[placed.number[k]] = -infinity;
+    });
   });
-  return any;
 }
 
 void BvhTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass) {
@@ -77,8 +127,8 @@ void BvhTracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayClass
     const auto trace = [&](std::size_t first, std::size_t last) {
       bvh_queries().closest(scene_.job(), &mine[first], last - first, answers);
       store_hits(scene_.geometry(), &mine[first], std::span(answers, last - first), &hits[begin + first]);
-      if (instances_.empty()) return;
-      for (std::size_t i = begin + first; i < begin + last; ++i) add_instances(rays[i], hits[i]);
+      if (!instances_.empty())
+        add_instances(mine.subspan(first, last - first), hits.subspan(begin + first, last - first));
     };
     for_runs(mine, is_valid, trace, [&](std::size_t i) { hits[begin + i] = {.status = status_invalid}; });
   });
@@ -91,9 +141,7 @@ void BvhTracer::any(std::span<const Ray> rays, std::span<std::uint32_t> status, 
     const auto answers = status.subspan(begin, end - begin);
     const auto trace = [&](std::size_t first, std::size_t last) {
       bvh_queries().any(scene_.job(), &mine[first], last - first, &answers[first]);
-      if (instances_.empty()) return;
-      for (std::size_t i = first; i < last; ++i)
-        if (answers[i] == status_miss && any_instance(mine[i])) answers[i] = status_hit;
+      if (!instances_.empty()) add_instances(mine.subspan(first, last - first), answers.subspan(first, last - first));
     };
     for_runs(mine, is_valid, trace, [&](std::size_t i) { answers[i] = status_invalid; });
   });

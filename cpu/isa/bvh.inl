@@ -109,7 +109,7 @@ INLINE void trace_tube(const BvhJob& job, PacketState& p, Tube& tube) {
 
 /// Whether there was anything to meet; where not, nothing but `hit` is set.
 template <Ask ask>
-INLINE bool trace_group(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, PacketState& p) {
+INLINE bool trace_group(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors, PacketState& p) {
   Columns columns;
   load_columns(rays, count, columns);
   p.hit = 0;
@@ -119,7 +119,7 @@ INLINE bool trace_group(const BvhJob& job, const Ray* rays, std::size_t count, c
     alive = living(p.local, count);
   }
   if (!alive && !job.unbounded) return false;
-  load_packet<ask>(job, columns, error, p);
+  load_packet<ask>(job, columns, errors, count, p);
   if (job.unbounded) test_leaf_together<ask>(job, *job.unbounded, p, (1u << count) - 1);
   if (ask.any) alive &= ~p.hit;
   if (!alive) return true;
@@ -165,12 +165,12 @@ INLINE BvhAnswer certain_answer_of(const State<Reals>& s, std::size_t i) {
 }
 
 template <Ask ask>
-INLINE void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+INLINE void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
                          BvhAnswer* answers) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t rays_here = group_size(count - first);
-    const bool met = trace_group<ask>(job, rays + first, rays_here, error, p);
+    const bool met = trace_group<ask>(job, rays + first, rays_here, errors ? errors + first : nullptr, p);
     for (std::size_t k = 0; k < rays_here; ++k) {
       const State<Reals>& s = p.part[k / reals_count];
       answers[first + k] = !met          ? no_answer
@@ -181,12 +181,12 @@ INLINE void closest_hits(const BvhJob& job, const Ray* rays, std::size_t count, 
 }
 
 template <Ask ask>
-INLINE void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+INLINE void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
                      std::uint32_t* status) {
   PacketState p;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t rays_here = group_size(count - first);
-    const bool met = trace_group<ask>(job, rays + first, rays_here, error, p);
+    const bool met = trace_group<ask>(job, rays + first, rays_here, errors ? errors + first : nullptr, p);
     for (std::size_t k = 0; k < rays_here; ++k) {
       const bool hit = p.hit >> k & 1;
       status[first + k] = hit ? status_hit : status_miss;
@@ -197,17 +197,18 @@ INLINE void any_hits(const BvhJob& job, const Ray* rays, std::size_t count, cons
 }
 
 void closest(const BvhJob& job, const Ray* rays, std::size_t count, BvhAnswer* answers) {
-  closest_hits<nearest_hit>(job, rays, count, {}, answers);
+  closest_hits<nearest_hit>(job, rays, count, nullptr, answers);
 }
 void any(const BvhJob& job, const Ray* rays, std::size_t count, std::uint32_t* status) {
-  any_hits<any_hit>(job, rays, count, {}, status);
+  any_hits<any_hit>(job, rays, count, nullptr, status);
 }
-void certain_closest(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error, BvhAnswer* answers) {
-  closest_hits<certain_nearest>(job, rays, count, error, answers);
+void certain_closest(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
+                     BvhAnswer* answers) {
+  closest_hits<certain_nearest>(job, rays, count, errors, answers);
 }
-void certainly_any(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+void certainly_any(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
                    std::uint32_t* status) {
-  any_hits<certain_any>(job, rays, count, error, status);
+  any_hits<certain_any>(job, rays, count, errors, status);
 }
 
 }  // namespace

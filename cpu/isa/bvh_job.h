@@ -61,14 +61,15 @@ constexpr std::uint32_t status_unsure = ~0u;
 using TakeLeaf = double (*)(void* to, const BvhLeaf& leaf);
 
 /// The queries of one instruction set. Rays must be valid; any number of them. Those that certify need rays, and
-/// scenes, whose numbers are moderate: see is_moderate. Every answer of theirs is that of exact arithmetic or unsure.
+/// scenes, whose numbers are moderate: see is_moderate; `errors` are null, or one a ray. Every answer of theirs is that
+/// of exact arithmetic or unsure.
 struct BvhQueries {
   void (*closest)(const BvhJob& job, const Ray* rays, std::size_t count, BvhAnswer* answers);
   void (*any)(const BvhJob& job, const Ray* rays, std::size_t count, std::uint32_t* status);
   void (*all)(const BvhJob& job, const Ray& ray, CollectAnswer collect, void* to);
-  void (*certain_closest)(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+  void (*certain_closest)(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
                           BvhAnswer* answers);
-  void (*certain_any)(const BvhJob& job, const Ray* rays, std::size_t count, const RayError& error,
+  void (*certain_any)(const BvhJob& job, const Ray* rays, std::size_t count, const RayError* errors,
                       std::uint32_t* status);
   void (*certain_all)(const BvhJob& job, const Ray& ray, const RayError& error, CollectAnswer collect, void* to);
   void (*leaves)(const BvhJob& job, const Ray& ray, TakeLeaf take, void* to);

@@ -39,8 +39,22 @@ INLINE void load_columns(const Ray* rays, std::size_t count, Columns& columns) {
   }
 }
 
+/// Of the rays of a group; places past the last ray repeat it.
+struct ErrorColumns {
+  alignas(64) double origin[group] = {}, direction[group] = {};
+
+  ErrorColumns(const RayError* errors, std::size_t count) {
+    if (!errors) return;
+    for (std::size_t k = 0; k < group; ++k) {
+      const RayError& error = errors[k < count ? k : count - 1];
+      origin[k] = error.origin, direction[k] = error.direction;
+    }
+  }
+};
+
 template <Ask ask>
-INLINE void load_packet(const BvhJob& job, const Columns& columns, const RayError& error, PacketState& p) {
+INLINE void load_packet(const BvhJob& job, const Columns& columns, const RayError* errors, std::size_t count,
+                        PacketState& p) {
   for (int i = 0; i < parts; ++i) {
     State<Reals>& s = p.part[i];
     s.rays.o = {columns.of(0, i), columns.of(1, i), columns.of(2, i)};
@@ -48,8 +62,12 @@ INLINE void load_packet(const BvhJob& job, const Columns& columns, const RayErro
     s.rays.tmin = columns.of(3, i);
     s.rays.nearest = ask.certain ? columns.of(7, i) : just_above(columns.of(7, i));
     begin(s);
-    if (ask.certain) begin_certain(job, error, s);
   }
+  if (!ask.certain) return;
+  const ErrorColumns error(errors, count);
+  for (int i = 0; i < parts; ++i)
+    begin_certain(job, read<Reals>(error.origin + i * reals_count), read<Reals>(error.direction + i * reals_count),
+                  p.part[i]);
 }
 
 template <Ask ask>

@@ -268,7 +268,7 @@ void all_hits(const BvhJob& job, const Ray& ray, CollectAnswer collect, void* to
 void certain_all_hits(const BvhJob& job, const Ray& ray, const RayError& error, CollectAnswer collect, void* to) {
   State<double> s = begin_alone(ray);
   s.rays.nearest = ray.tmax;
-  begin_certain(job, error, s);
+  begin_certain(job, error.origin, error.direction, s);
   LocalRays local;
   for_leaves(job, ray, local, [&](const BvhLeaf& leaf) {
     collect_leaf<Ask{false, true}>(job, leaf, s, collect, to);

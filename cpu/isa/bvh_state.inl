@@ -62,15 +62,16 @@ INLINE REAL reach(const BvhJob& job, const Vec3<REAL>& o) {
 /// Keeps products of what is this small from underflowing unseen: smaller edge functions count as unsure.
 constexpr double underflow = 0x1p-900;
 
+/// By the errors of the origin and the direction.
 template <class REAL>
-INLINE void begin_certain(const BvhJob& job, const RayError& error, State<REAL>& s) {
+INLINE void begin_certain(const BvhJob& job, REAL o_error, REAL d_error, State<REAL>& s) {
   constexpr double units = 6 * std::numeric_limits<double>::epsilon() / 2;
   const REAL none = splat<REAL>(std::numeric_limits<double>::infinity());
   Certainty<REAL>& c = s.certainty;
   c.t = c.low = c.rival = none;
-  c.o_extra = splat<REAL>(error.origin / units);
-  const REAL length = largest_of(s.rays.d), d_error = splat<REAL>(error.direction), o_error = splat<REAL>(error.origin);
-  c.d_size = length + splat<REAL>(error.direction / units);
+  c.o_extra = o_error / units;
+  const REAL length = largest_of(s.rays.d);
+  c.d_size = length + d_error / units;
   const REAL far = reach(job, s.rays.o);
   s.sheared.per_length = 1 / length;
   s.sheared.corner_error = kernels::corner_error(far, o_error, 3 * d_error * s.sheared.per_length);
