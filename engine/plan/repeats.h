@@ -17,9 +17,9 @@ struct Repeat {
 /// Smaller meshes are as well copied (measured, see docs/plan.md).
 inline constexpr std::uint32_t fewest_repeated_triangles = 256;
 
-/// What a ray takes among instances, against what it takes among copies of the same meshes: primary rays, the worst
-/// that was measured.
-inline constexpr double instance_cost_embree = 1.3, instance_cost_bvh = 5;
+/// What a ray takes among instances, against what it takes among copies of the same meshes: the worst of primary and
+/// shadow rays that was measured.
+inline constexpr double instance_cost_embree = 1, instance_cost_bvh = 2;
 
 /// Bytes that a triangle takes in a Geometry and Embree's scene of it, and an instance in theirs.
 inline constexpr std::size_t bytes_per_triangle = 100, bytes_per_instance = 300;
