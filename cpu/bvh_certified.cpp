@@ -206,25 +206,19 @@ void CertifiedBvh::closest(std::span<const Ray> rays, std::span<Hit> hits, RayCl
   });
 }
 
-/// Where a hit or miss was not found for sure: status_hit, status_miss, or status_unsure.
+/// Those that missed become status_hit, or status_unsure where it cannot be told.
 void CertifiedBvh::add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
-  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
-    const auto mine = rays.subspan(first, count);
-    const auto answers = status.subspan(first, count);
-    double ends[InstanceWalk::most_rays];
-    std::uint32_t met[InstanceWalk::most_rays];
-    CertainRays placed;
-    for (std::size_t i = 0; i < count; ++i) ends[i] = answers[i] == status_miss ? mine[i].tmax : -infinity;
-    instances_.for_met(mine, std::span(ends).first(count), [&](const Meeting& meeting) {
-      placed.place(meeting, mine, ends);
-      bvh_queries().certain_any(meeting.group.job(), placed.rays.data(), placed.count, placed.errors.data(), met);
-      for (std::size_t k = 0; k < placed.count; ++k) {
-        const std::uint32_t i = placed.number[k];
-        if (met[k] != status_miss) answers[i] = met[k];
-        if (met[k] == status_hit) ends[i] = -infinity;
-      }
-      for (std::size_t k = 0; k < placed.other_count; ++k) answers[placed.other[k]] = status_unsure;
-    });
+  std::uint32_t met[InstanceWalk::most_rays];
+  CertainRays placed;
+  instances_.for_missed(rays, status, [&](const Meeting& meeting, auto mine, auto ends, auto answers) {
+    placed.place(meeting, mine, ends);
+    bvh_queries().certain_any(meeting.group.job(), placed.rays.data(), placed.count, placed.errors.data(), met);
+    for (std::size_t k = 0; k < placed.count; ++k) {
+      const std::uint32_t i = placed.number[k];
+      if (met[k] != status_miss) answers[i] = met[k];
+      if (met[k] == status_hit) ends[i] = -infinity;
+    }
+    for (std::size_t k = 0; k < placed.other_count; ++k) answers[placed.other[k]] = status_unsure;
   });
 }
 

@@ -64,7 +64,12 @@ class BvhInstances {
   template <class Meet>
   void for_met(std::span<const Ray> rays, std::span<const double> ends, Meet&& meet) const;
 
-  /// The same for one ray; meet(instance, scene of its group, the ray in its space) answers the end.
+  /// For any-hit queries of any number of rays: meet(Meeting, rays, ends, status) for those that missed so far, at most
+  /// InstanceWalk::most_rays of them together; places in the meeting are those in the three spans.
+  template <class Meet>
+  void for_missed(std::span<const Ray> rays, std::span<std::uint32_t> status, Meet&& meet) const;
+
+  /// For one ray: meet(instance, scene of its group, the ray in its space) answers the end.
   template <class Meet>
   void for_met(const Ray& ray, Meet&& meet) const;
 
@@ -88,6 +93,18 @@ void BvhInstances::for_met(std::span<const Ray> rays, std::span<const double> en
       meet(Meeting{instances_[index], *groups_[instances_[index].group], pairs.first(count)});
       pairs = pairs.subspan(count);
     }
+}
+
+template <class Meet>
+void BvhInstances::for_missed(std::span<const Ray> rays, std::span<std::uint32_t> status, Meet&& meet) const {
+  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
+    const auto mine = rays.subspan(first, count);
+    const auto answers = status.subspan(first, count);
+    std::array<double, InstanceWalk::most_rays> room;
+    const auto ends = std::span(room).first(count);
+    for (std::size_t i = 0; i < count; ++i) ends[i] = answers[i] == status_miss ? mine[i].tmax : -infinity;
+    for_met(mine, ends, [&](const Meeting& meeting) { meet(meeting, mine, ends, answers); });
+  });
 }
 
 template <class Meet>

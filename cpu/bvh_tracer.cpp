@@ -103,19 +103,13 @@ void BvhTracer::add_instances(std::span<const Ray> rays, std::span<Hit> hits) co
 }
 
 void BvhTracer::add_instances(std::span<const Ray> rays, std::span<std::uint32_t> status) const {
-  for_blocks(rays.size(), [&](std::size_t first, std::size_t count) {
-    const auto mine = rays.subspan(first, count);
-    const auto answers = status.subspan(first, count);
-    double ends[InstanceWalk::most_rays];
-    std::uint32_t met[InstanceWalk::most_rays];
-    PlacedRays placed;
-    for (std::size_t i = 0; i < count; ++i) ends[i] = answers[i] == status_miss ? mine[i].tmax : -infinity;
-    instances_.for_met(mine, std::span(ends).first(count), [&](const Meeting& meeting) {
-      placed.place(meeting, mine, ends, may_trace);
-      bvh_queries().any(meeting.group.job(), placed.rays.data(), placed.count, met);
-      for (std::size_t k = 0; k < placed.count; ++k)
-        if (met[k] == status_hit) answers[placed.number[k]] = status_hit, ends[placed.number[k]] = -infinity;
-    });
+  std::uint32_t met[InstanceWalk::most_rays];
+  PlacedRays placed;
+  instances_.for_missed(rays, status, [&](const Meeting& meeting, auto mine, auto ends, auto answers) {
+    placed.place(meeting, mine, ends, may_trace);
+    bvh_queries().any(meeting.group.job(), placed.rays.data(), placed.count, met);
+    for (std::size_t k = 0; k < placed.count; ++k)
+      if (met[k] == status_hit) answers[placed.number[k]] = status_hit, ends[placed.number[k]] = -infinity;
   });
 }
 
