@@ -1,5 +1,6 @@
 #include "cpu/bvh_certified.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -113,8 +114,8 @@ std::vector<Hit> CertifiedBvh::exact_all(const Ray& ray) const {
 
 /// A group's rays with their errors; of the others double precision cannot tell.
 struct CertainRays : PlacedRays {
-  void place(const Meeting& meeting, std::span<const Ray> asked, std::span<const double> ends) {
-    PlacedRays::place(meeting, asked, ends, may_certify);
+  void place_certain(const Meeting& meeting, std::span<const Ray> asked, std::span<const double> ends) {
+    place(meeting, asked, ends, may_certify);
     for (std::size_t k = 0; k < count; ++k) errors[k] = placing_error(asked[number[k]], meeting.instance.to_group);
   }
 
@@ -136,7 +137,7 @@ class CertainNearest {
   std::span<const double> ends() const { return std::span(ends_).first(rays_.size()); }
 
   void meet(const Meeting& meeting) {
-    placed_.place(meeting, rays_, ends_);
+    placed_.place_certain(meeting, rays_, ends_);
     bvh_queries().certain_closest(meeting.group.job(), placed_.rays.data(), placed_.count, placed_.errors.data(),
                                   answers_.data());
     for (std::size_t k = 0; k < placed_.count; ++k)
@@ -211,7 +212,7 @@ void CertifiedBvh::add_instances(std::span<const Ray> rays, std::span<std::uint3
   std::uint32_t met[InstanceWalk::most_rays];
   CertainRays placed;
   instances_.for_missed(rays, status, [&](const Meeting& meeting, auto mine, auto ends, auto answers) {
-    placed.place(meeting, mine, ends);
+    placed.place_certain(meeting, mine, ends);
     bvh_queries().certain_any(meeting.group.job(), placed.rays.data(), placed.count, placed.errors.data(), met);
     for (std::size_t k = 0; k < placed.count; ++k) {
       const std::uint32_t i = placed.number[k];

@@ -1,6 +1,5 @@
 #include "cpu/bvh_tracer.h"
 
-#include <array>
 #include <tuple>
 
 #include "accel/stopwatch.h"
@@ -150,7 +149,7 @@ std::vector<Hit> BvhTracer::all(const Ray& ray) const {
     return ray.tmax;
   };
   add(scene_, nullptr, ray);
-  if (is_valid(ray))
+  if (!instances_.empty() && is_valid(ray))
     instances_.for_met(ray, [&](const Instance& instance, const BvhScene& group, const Ray& local) {
       return add(group, &instance, local);
     });

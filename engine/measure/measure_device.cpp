@@ -45,7 +45,7 @@ std::shared_ptr<const Geometry> balls(std::size_t count) {
   return builder.build();
 }
 
-/// One crumpled ball of 20 triangles, cut in four so many times, which are as uneven as those of scans: a round one
+/// One crumpled ball of 8 triangles, cut in four so many times, which are as uneven as those of scans: a round one
 /// would flatter quick builds.
 std::shared_ptr<const Geometry> ball_mesh(std::size_t subdivisions) {
   Mesh ball = subdivided_sphere(static_cast<int>(subdivisions));
@@ -56,7 +56,7 @@ std::shared_ptr<const Geometry> ball_mesh(std::size_t subdivisions) {
   return builder.build();
 }
 
-/// So many instances of a ball of 80 triangles, where the balls would be.
+/// So many instances of a ball of 32 triangles, where the balls would be.
 std::shared_ptr<const Geometry> instances(std::size_t count) {
   GeometryBuilder group, builder;
   group.add(subdivided_sphere(1));
@@ -75,6 +75,15 @@ Scene picture_of(const std::shared_ptr<const Geometry>& geometry) {
   scene.camera.fov *= wider;
   scene.lights = {{.position = scene.camera.from + glm::dvec3(geometry->bounds.extent())}};
   return scene;
+}
+
+/// By the threads and the GPU of `where`.
+TracerOptions options_of(const TracerCost& cost, const TracerOptions& where) {
+  return {.precision = cost.precision,
+          .threads = where.threads,
+          .gpu = where.gpu,
+          .build = cost.build,
+          .treelet = cost.treelet};
 }
 
 struct Sample {
@@ -98,9 +107,9 @@ double of_chords(Tracer& tracer, const Box& bounds) {
   return best_seconds([&] { closest(tracer, rays, hits, RayClass::bounce); }) / static_cast<double>(rays.size());
 }
 
-Sample measure(const std::shared_ptr<const Geometry>& geometry, const TracerCost& of, int threads, Limits& limits) {
-  const auto tracer = make_tracer(
-      of.tracer, geometry, {.precision = of.precision, .threads = threads, .build = of.build, .treelet = of.treelet});
+Sample measure(const std::shared_ptr<const Geometry>& geometry, const TracerCost& of, const TracerOptions& where,
+               Limits& limits) {
+  const auto tracer = make_tracer(of.tracer, geometry, options_of(of, where));
   limits = tracer->limits();
   const std::size_t primitives = geometry->instances.empty() ? geometry->primitive_count : geometry->instances.size();
   return {.primitives = static_cast<double>(primitives),
@@ -115,17 +124,18 @@ PrimitiveCost cost_of(const std::array<Sample, 3>& samples) {
   PrimitiveCost cost{.build = many.build / many.primitives, .bytes = many.bytes / many.primitives};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     cost.counts[i] = samples[i].primitives;
-    cost.coherent[i] = samples[i].coherent;
-    cost.scattered[i] = samples[i].scattered;
+    const std::size_t fewer = i > 0 ? i - 1 : 0;  // more of them are no faster, whatever a busy machine says
+    cost.coherent[i] = std::max(samples[i].coherent, cost.coherent[fewer]);
+    cost.scattered[i] = std::max(samples[i].scattered, cost.scattered[fewer]);
   }
   return cost;
 }
 
-void measure(TracerCost& cost, int threads) {
+void measure(TracerCost& cost, const TracerOptions& where) {
   Limits limits;
   const auto among = [&](const auto& make, std::array<std::size_t, 3> sizes) {
     std::array<Sample, 3> samples{};
-    for (std::size_t i = 0; i < sizes.size(); ++i) samples[i] = measure(make(sizes[i]), cost, threads, limits);
+    for (std::size_t i = 0; i < sizes.size(); ++i) samples[i] = measure(make(sizes[i]), cost, where, limits);
     return cost_of(samples);
   };
   // Without a structure there can only be few.
@@ -137,24 +147,37 @@ void measure(TracerCost& cost, int threads) {
   cost.quadric_roundoff = limits.quadric_roundoff;
 }
 
+/// Than what was built with more care: where there is little to build either way, less is luck.
+void be_no_faster(TracerCost& quick, const TracerCost& thorough) {
+  const auto raise = [](PrimitiveCost& cost, const PrimitiveCost& least) {
+    for (std::size_t i = 0; i < cost.counts.size(); ++i) {
+      cost.coherent[i] = std::max(cost.coherent[i], least.coherent[i]);
+      cost.scattered[i] = std::max(cost.scattered[i], least.scattered[i]);
+    }
+  };
+  raise(quick.triangle, thorough.triangle);
+  raise(quick.quadric, thorough.quadric);
+  raise(quick.instance, thorough.instance);
+}
+
 /// Before it builds anything: contexts and kernels of the GPU.
-double seconds_to_start(const TracerCost& of, int threads) {
+double seconds_to_start(const TracerCost& of, const TracerOptions& where) {
   const std::shared_ptr<const Geometry> one = ball_mesh(0);
   const Stopwatch watch;
-  make_tracer(of.tracer, one, {.precision = of.precision, .threads = threads, .treelet = of.treelet});
+  make_tracer(of.tracer, one, options_of(of, where));
   return watch.seconds();
 }
 
 /// Those that need a GPU, or a renderer in software that takes its part; none where there is neither. Whoever is first
 /// starts the driver.
-std::vector<TracerCost> tracers_of_gpu(int threads) {
+std::vector<TracerCost> tracers_of_gpu(const TracerOptions& where) {
   std::vector<TracerCost> costs{{.tracer = "grid"}};
   for (const std::uint32_t treelet : {16, 64, 512}) costs.push_back({.tracer = "stream", .treelet = treelet});
   try {
-    const double start = seconds_to_start(costs.front(), threads);
+    const double start = seconds_to_start(costs.front(), where);
     for (TracerCost& cost : costs) {
       cost.start = start;
-      measure(cost, threads);
+      measure(cost, where);
     }
   } catch (const Error&) {
     return {};
@@ -183,18 +206,19 @@ double seconds_each(const Mesh& mesh, const std::function<void()>& work) {
 
 }  // namespace
 
-DeviceMeasurements measure_device(int threads) {
+DeviceMeasurements measure_device(const TracerOptions& where) {
   DeviceMeasurements device;
   const auto add = [&](const char* name, Precision precision, Build build = Build::thorough) {
-    measure(device.tracers.emplace_back(TracerCost{.tracer = name, .precision = precision, .build = build}), threads);
+    measure(device.tracers.emplace_back(TracerCost{.tracer = name, .precision = precision, .build = build}), where);
   };
   add("embree", Precision::fast);
   add("embree", Precision::robust);
   add("embree", Precision::robust, Build::quick);
+  be_no_faster(device.tracers[2], device.tracers[1]);
   add("bvh", Precision::robust);
   add("bvh", Precision::robust, Build::none);
   add("bvh", Precision::certified);
-  for (TracerCost& cost : tracers_of_gpu(threads)) device.tracers.push_back(std::move(cost));
+  for (TracerCost& cost : tracers_of_gpu(where)) device.tracers.push_back(std::move(cost));
   const Mesh ball = subdivided_sphere(7), tubes = open_tubes();
   device.recognise_whole = seconds_each(ball, [&] { recognise(ball, 0.01, Pieces::whole); });
   device.recognise_parts = seconds_each(tubes, [&] { recognise(tubes, 0.01, Pieces::parts); });

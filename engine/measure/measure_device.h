@@ -1,11 +1,14 @@
 #pragma once
 
 #include "engine/plan/device.h"
+#include "engine/tracers.h"
 
 namespace rayengine {
 
-/// Measures what a plan chooses by: builds each tracer of the processor, at each precision, over few and many balls and
-/// triangles, and asks it neighbouring and scattered rays; and recognises and coarsens made meshes. Takes some seconds.
-DeviceMeasurements measure_device(int threads);
+/// Measures what a plan chooses by: builds each tracer, at each precision and with each structure, over few, some and
+/// many triangles, quadrics and instances, and asks it rays of a picture and scattered ones; and recognises and
+/// coarsens made meshes. By the threads and the GPU of `where`; what needs a GPU is left out where there is none. Takes
+/// half a minute.
+DeviceMeasurements measure_device(const TracerOptions& where);
 
 }  // namespace rayengine

@@ -17,8 +17,8 @@ struct Repeat {
 /// Smaller meshes are as well copied (measured, see docs/plan.md).
 inline constexpr std::uint32_t fewest_repeated_triangles = 256;
 
-/// What a ray takes among instances, against what it takes among copies of the same meshes: the worst of primary and
-/// shadow rays that was measured.
+/// What a ray takes among instances, against what it takes among copies of the same meshes, about: the worst of primary
+/// and shadow rays that was measured among meshes of so many triangles.
 inline constexpr double instance_cost_embree = 1, instance_cost_bvh = 2;
 
 /// Bytes that a triangle takes in a Geometry and Embree's scene of it, and an instance in theirs.

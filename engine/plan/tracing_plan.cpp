@@ -1,5 +1,6 @@
-#include <array>
+#include <algorithm>
 #include <span>
+#include <string>
 
 #include "engine/plan/costs.h"
 
@@ -92,9 +93,9 @@ Choice tracer_choice(const std::vector<Candidate>& sorted, const Tolerance& tole
         (!rival || other.seconds * other.handicap < rival->seconds * rival->handicap))
       rival = &other;
   if (rival) c.instead = name_of(*rival->cost), c.instead_seconds = rival->seconds, c.instead_error = rival->error;
-  c.why = tolerance.value == 0 ? "a tolerance of 0 means exact: every answer is proven"
-          : best.accurate      ? "the fastest whose arithmetic takes no more than its share of the tolerance"
-                               : "none is known to keep within its share of the tolerance: the nearest to it";
+  c.why = !best.accurate         ? "none is known to keep within its share of the tolerance: the nearest to it"
+          : tolerance.value == 0 ? "a tolerance of 0 means exact: every answer is proven"
+                                 : "the fastest whose arithmetic takes no more than its share of the tolerance";
   return c;
 }
 
@@ -108,37 +109,44 @@ std::string structure_name(const TracerCost& cost, std::uint64_t primitives) {
   return cost.build == Build::quick ? whose + ", built quickly" : whose;
 }
 
-/// Each with the fastest of the tracers that have it, and are as accurate as the best.
-std::vector<Alternative> other_structures(const std::vector<Candidate>& sorted, std::uint64_t primitives) {
+/// Those that are as accurate as the best, each with the fastest of the tracers that have it: usable ones first.
+std::vector<Alternative> other_structures(const std::vector<Candidate>& sorted, bool usable, std::uint64_t primitives) {
   const Candidate& best = sorted.front();
-  std::vector<Alternative> others{{structure_name(*best.cost, primitives)}};
-  for (const Candidate& other : std::span(sorted).subspan(1)) {
+  const std::string chosen = structure_name(*best.cost, primitives);
+  std::vector<Alternative> others;
+  for (const Candidate& other : sorted) {
     const std::string name = structure_name(*other.cost, primitives);
-    if (other.accurate != best.accurate) continue;
+    if (other.usable != usable || other.accurate != best.accurate || name == chosen) continue;
     const auto known = std::ranges::find(others, name, &Alternative::name);
     if (known == others.end())
       others.push_back({name, other.seconds, other.error});
     else if (other.seconds < known->seconds)
       *known = {name, other.seconds, other.error};
   }
-  others.erase(others.begin());
   std::ranges::stable_sort(others, {}, &Alternative::seconds);
   return others;
 }
 
+const char* why_structure(const Candidate& best, const Alternative& rival) {
+  if (best.cost->build == Build::quick) return "there are too few rays to repay a thorough build";
+  if (best.cost->build == Build::none) return "there is so little that a look at all takes no longer";
+  if (rival.name.empty()) return "what the tracer builds for such a scene";
+  if (rival.seconds < best.seconds) return "no other is predicted to be so much faster that it is sure to be";
+  return "the least predicted time to build it and to ask all rays";
+}
+
+/// What was weighed but is not to be had here comes last.
 Choice structure_choice(const std::vector<Candidate>& sorted, std::uint64_t primitives) {
   const Candidate& best = sorted.front();
-  std::vector<Alternative> others = other_structures(sorted, primitives);
-  const Alternative rival = others.empty() ? Alternative{} : others.front();
-  if (!others.empty()) others.erase(others.begin());
-  const char* why = best.cost->build == Build::quick  ? "there are too few rays to repay a thorough build"
-                    : best.cost->build == Build::none ? "there is so little that a look at all takes no longer"
-                    : rival.name.empty()              ? "what the tracer builds for such a scene"
-                                                      : "the least predicted time to build it and to ask all rays";
+  std::vector<Alternative> others = other_structures(sorted, true, primitives);
+  Alternative rival;
+  if (!others.empty()) rival = others.front(), others.erase(others.begin());
+  for (Alternative& other : other_structures(sorted, false, primitives))
+    others.push_back({other.name + ", which is not here", other.seconds, other.error});
   return {"structure",      structure_name(*best.cost, primitives),
           best.seconds,     best.error,
           rival.name,       rival.seconds,
-          rival.error,      why,
+          rival.error,      why_structure(best, rival),
           std::move(others)};
 }
 
@@ -201,11 +209,12 @@ TracingPlan plan_tracing(const SceneStatistics& scene, const DeviceMeasurements&
                          bool gpu, bool replaced) {
   check(tolerance);
   const std::vector<Candidate> sorted = candidates(scene, device, tolerance, gpu, replaced);
+  if (sorted.empty()) throw Error("no tracer was measured that can trace this scene: see rayengine plan --measure");
   const TracerCost& best = *sorted.front().cost;
   TracingPlan plan;
   // With a GPU the hybrid measures both of its halves, and shares the work as it goes.
   plan.tracer = gpu && is_half(best) ? "auto" : best.tracer;
-  plan.treelet = gpu ? best_treelet(sorted) : 0;
+  plan.treelet = plan.tracer == "auto" ? best_treelet(sorted) : 0;
   plan.precision = best.precision;
   plan.build = best.build;
   plan.seconds = sorted.front().seconds;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -33,6 +34,19 @@ DeviceMeasurements known_device(const Common& common) {
   } catch (const Error& error) {
     note(common, error.what());
     return usual_device();
+  }
+}
+
+/// A grid is chosen for what the device was measured to be: what may be one is then looked at. The hybrid does so
+/// itself.
+bool has_gpu(const DeviceMeasurements& device, int gpu) {
+  if (!may_have_gpu()) return false;
+  if (std::ranges::find(device.tracers, "grid", &TracerCost::tracer) == device.tracers.end()) return true;
+  try {
+    require_hardware(gpu);
+    return true;
+  } catch (const Error&) {
+    return false;
   }
 }
 
@@ -123,11 +137,10 @@ void add_planning(CLI::App* app, PlanningOptions& options) {
 }
 
 PlanSource::PlanSource(const PlanningOptions& options, const Common& common)
-    : options_{.tolerance = tolerance_of(options),
-               .effort = options.effort,
-               .gpu = may_have_gpu(),
-               .tools = cached_mesh_tools()},
-      device_(known_device(common)) {}
+    : options_{.tolerance = tolerance_of(options), .effort = options.effort, .tools = cached_mesh_tools()},
+      device_(known_device(common)) {
+  options_.gpu = has_gpu(device_, common.gpu);
+}
 
 PlanOptions PlanSource::for_rays(double rays, bool coherent) const {
   PlanOptions options = options_;
@@ -203,7 +216,7 @@ Json PlannedScene::json() const {
 }
 
 void measure_machine(const Common& common) {
-  const DeviceMeasurements device = measure_device(common.threads);
+  const DeviceMeasurements device = measure_device({.threads = common.threads, .gpu = common.gpu});
   const std::string text = to_text(device);
   const fs::path file = device_file();
   if (file.empty() || !write_cache_file(file, {std::as_bytes(std::span(text))}))

@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "cpu/bvh_tracer.h"
 #include "cpu/instance_walk.h"
+#include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
 
 namespace rayengine {
 namespace {
+
+/// The object whose faces all but coincide: its numbers are not moderate, and only certified answers tell them apart.
+constexpr std::uint32_t flat = 60;
 
 /// More balls and tetrahedra than a ray's list holds, one through another, some in the same place, and two planes.
 std::shared_ptr<const Geometry> crowd() {
@@ -24,6 +29,7 @@ std::shared_ptr<const Geometry> crowd() {
     const glm::dvec3 at(place % 5, place / 5 % 5, place / 25);
     builder.add(group, Affine::translate(at) * Affine::rotate({1, 2, 3}, 7. * place) * Affine::scale(glm::dvec3(0.8)));
   }
+  builder.add(group, Affine::translate({7, 2, 1}) * Affine::scale(glm::dvec3(1, 1, 0x1p-120)));
   builder.add(QuadricShape{}, 0, Affine::translate({2, 2, 0.5}));
   for (const double z : {-2., 4.}) builder.add(floor, Affine::translate({0, 0, z}));
   return builder.build();
@@ -64,6 +70,28 @@ TEST_P(CompanyOfRays, DoesNotChangeWhetherThereIsAny) {
   }
   EXPECT_GT(hits, rays_.size() / 10);
   EXPECT_LT(hits, rays_.size());
+}
+
+/// The same as exact arithmetic, which walks no boxes: with intervals of all kinds, and a ray that is none among them.
+TEST_P(CompanyOfRays, IsAnsweredAsExactArithmeticDoes) {
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    if (i % 3 == 0) rays_[i].tmin = 3;
+    if (i % 7 == 0) rays_[i].tmax = 5;
+  }
+  rays_[100].direction = {};
+  std::vector<Hit> hits(rays_.size()), exact(rays_.size());
+  std::vector<std::uint32_t> any(rays_.size());
+  tracer_->closest(rays_, hits, RayClass::bounce);
+  tracer_->any(rays_, any, RayClass::shadow);
+  make_reference_tracer(geometry_)->closest(rays_, exact, RayClass::bounce);
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    EXPECT_EQ(hits[i].object, exact[i].object) << "ray " << i;
+    const bool can_tell = GetParam() == Precision::certified || exact[i].object != flat;
+    EXPECT_TRUE(!can_tell || hits[i].primitive == exact[i].primitive) << "ray " << i;
+    EXPECT_EQ(any[i], exact[i].status & (status_hit | status_invalid)) << "ray " << i;
+    if (!exact[i].hit()) continue;
+    EXPECT_LE(std::abs(hits[i].t - exact[i].t), GetParam() == Precision::certified ? hits[i].error : 1e-12);
+  }
 }
 
 /// What all hits say is another path, ray by ray.

@@ -129,6 +129,9 @@ TEST(Plan, BuildsQuicklyForFewRaysAmongTriangles) {
   scene.rays = 1e5;
   ++scene.quadrics;
   EXPECT_EQ(planned().build, Build::thorough);
+  scene = scene_of({far_mesh(12, 1)});
+  scene.rays = 1e9;
+  EXPECT_EQ(planned().build, Build::thorough);
 }
 
 /// A GPU by numbers made up: its structures are shown everywhere, and taken where there is one.
@@ -147,7 +150,10 @@ TEST(Plan, TakesAStructureOfTheGpuWhereItIsThereAndFaster) {
   const SceneStatistics scene = scene_of({far_mesh(100000, 0.2)});
   const DeviceMeasurements grid = with_gpu("grid", 1e-12), stream = with_gpu("stream", 1e-12);
   EXPECT_EQ(plan_tracing(scene, grid, half_pixel, true).tracer, "grid");
-  EXPECT_EQ(plan_tracing(scene, grid, half_pixel, false).tracer, "embree");
+  const TracingPlan without = plan_tracing(scene, grid, half_pixel, false);
+  EXPECT_EQ(without.tracer, "embree");
+  EXPECT_EQ(without.choices.at(1).instead.find("grid"), std::string::npos);
+  EXPECT_EQ(plan_tracing(scene, stream, exact, true).treelet, 0u);
   EXPECT_EQ(plan_tracing(scene, with_gpu("grid", 1), half_pixel, true).tracer, "auto");
   const TracingPlan hybrid = plan_tracing(scene, stream, half_pixel, true);
   EXPECT_EQ(hybrid.tracer, "auto");
@@ -164,10 +170,10 @@ TEST(Plan, SaysWhatOtherStructuresWouldTake) {
     all.insert(all.begin(), {c.instead, c.instead_seconds, c.instead_error});
     return all;
   };
-  EXPECT_EQ(others().back().name, "treelets of 64, on the GPU");
+  EXPECT_EQ(others().back().name, "treelets of 64, on the GPU, which is not here");
   EXPECT_TRUE(std::ranges::is_sorted(others(), {}, &Alternative::seconds));
   scene.triangles = 10;
-  EXPECT_EQ(others().back().name, "none: all in one treelet, on the GPU");
+  EXPECT_EQ(others().back().name, "none: all in one treelet, on the GPU, which is not here");
 }
 
 /// A ray may be answered by the half that computes in single precision.
