@@ -1,5 +1,6 @@
 #include "cpu/embree_hits.h"
 
+#include <bit>
 #include <glm/geometric.hpp>
 
 #include "accel/surface.h"
@@ -15,14 +16,25 @@ void EmbreeHits::set_ids(Hit& hit, unsigned inst, const EmbreeScene::Level& leve
   hit.primitive += instance.first_primitive + level.geometry->objects[object].first_primitive;
 }
 
+void EmbreeHits::turn_normal(unsigned inst, Hit& hit) const {
+  if (inst == RTC_INVALID_GEOMETRY_ID || hit.normal == glm::vec3(0)) return;
+  const glm::dvec3 turned = scene_.instances()[inst].to_group.normal_to_world(glm::dvec3(hit.normal));
+  hit.normal = glm::vec3(glm::normalize(turned));
+}
+
 void EmbreeHits::finish_triangle(const EmbreeIds& ids, Hit& hit) const {
   const EmbreeScene::Level& level = scene_.level(ids.inst);
   const std::uint32_t object = EmbreeScene::object_of(level, ids.prim);
   hit.status = status_hit;
   set_ids(hit, ids.inst, level, object, ids.prim - level.geometry->objects[object].first);
-  if (ids.inst == RTC_INVALID_GEOMETRY_ID) return;
-  const glm::dvec3 turned = scene_.instances()[ids.inst].to_group.normal_to_world(glm::dvec3(hit.normal));
-  hit.normal = glm::vec3(glm::normalize(turned));
+  turn_normal(ids.inst, hit);
+}
+
+void EmbreeHits::finish_quadric(const EmbreeIds& ids, Hit& hit) const {
+  const auto part = static_cast<std::uint32_t>(hit.u), object = std::bit_cast<std::uint32_t>(hit.v);
+  hit.u = hit.v = 0;
+  set_ids(hit, ids.inst, scene_.level(ids.inst), object, part);
+  turn_normal(ids.inst, hit);
 }
 
 void EmbreeHits::quadric(const Ray& ray, const EmbreeIds& ids, float part, double t, Hit& hit) const {

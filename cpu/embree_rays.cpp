@@ -39,7 +39,7 @@ RayLoader::RayLoader(const EmbreeScene& scene, Precision precision)
       box_(scene.finite_bounds()),
       moves_(precision != Precision::fast && !box_.empty()),
       unbounded_(!scene.geometry().bounds.finite()),
-      has_quadrics_(rayengine::has_quadrics(scene.geometry())) {
+      reads_context_(precision != Precision::fast && has_quadrics(scene.geometry())) {
   if (box_.empty()) return;
   if (moves_) ordinary_.farthest = box_.extent() * EmbreeScene::near_extents;
   const double slack = box_.extent() * 0x1p-20;  // room for the rounding of the entry point itself
@@ -118,7 +118,7 @@ bool RayLoader::load_ordinary(std::span<const Ray> rays, Packet& packet) const {
     std::fill(std::ranges::copy(rays, padded).out, padded + lanes, rays.back());
     return load_ordinary({padded, lanes}, packet);
   }
-  return code_.load(ordinary_, rays.data(), packet.lanes, has_quadrics_ ? &packet.context : nullptr, packet.numbers);
+  return code_.load(ordinary_, rays.data(), packet.lanes, reads_context_ ? &packet.context : nullptr, packet.numbers);
 }
 
 bool RayLoader::load(std::span<const Ray> rays, Packet& packet) const {

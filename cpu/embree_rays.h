@@ -26,9 +26,9 @@ class RayLoader {
     code_.spread(packet.numbers, packet.lanes, singles.rays);
     for (int lane = 0; lane < packet.lanes; ++lane) {
       if (!packet.valid[lane]) continue;
-      if (has_quadrics_) copy_to_first(packet.context, lane, singles.context);
+      if (reads_context_) copy_to_first(packet.context, lane, singles.context);
       trace(&singles.context.embree, &singles.rays[lane]);
-      if (has_quadrics_) packet.context.nearest[lane] = singles.context.nearest[0];
+      if (reads_context_) packet.context.nearest[lane] = singles.context.nearest[0];
     }
     code_.gather(singles.rays, packet.lanes, packet.numbers);
   }
@@ -53,10 +53,10 @@ class RayLoader {
   const EmbreeScene& scene_;
   const PacketCode& code_;
   OrdinaryRays ordinary_;
-  Box box_;            ///< of everything finite
-  bool moves_;         ///< `fast` leaves rays where they are
-  bool unbounded_;     ///< some quadric is: rays that pass the box may hit too
-  bool has_quadrics_;  ///< whose callbacks read the context; nobody else does
+  Box box_;             ///< of everything finite
+  bool moves_;          ///< `fast` leaves rays where they are
+  bool unbounded_;      ///< some quadric is: rays that pass the box may hit too
+  bool reads_context_;  ///< somebody does: the callbacks of quadrics in double
 };
 
 }  // namespace rayengine

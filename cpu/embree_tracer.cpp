@@ -46,7 +46,7 @@ class EmbreeTracer final : public Tracer {
   void occluded(Packet& packet) const;
   void occluded_alone(Packet& packet, Singles& singles) const;
   void store(std::span<const Ray> rays, const Packet& packet, Hit* hits) const;
-  void finish(const Ray& ray, const Packet& packet, int lane, Hit& hit) const;
+  void finish(const Packet& packet, int lane, Hit& hit) const;
   std::vector<Hit> all(const Ray& ray) const;
 
   Precision precision_;
@@ -58,7 +58,8 @@ class EmbreeTracer final : public Tracer {
   RayLoader loader_;
   EmbreeHits maker_;
   const PacketCode& code_ = packet_code(best_isa());
-  bool only_one_mesh_ = maker_.only_one_mesh();
+  bool instances_ = !scene_.instances().empty();
+  bool ids_are_known_ = maker_.ids_are_known();
   /// Tests of triangles are so cheap that shadow rays gain from packets even where they part.
   bool mostly_triangles_ = geometry_->triangles.size() > geometry_->quadrics.size();
 };
@@ -93,31 +94,39 @@ void EmbreeTracer::occluded_alone(Packet& p, Singles& singles) const {
   });
 }
 
-/// A hit that was stored as one of a mesh's triangles becomes what it is.
-void EmbreeTracer::finish(const Ray& ray, const Packet& p, int lane, Hit& hit) const {
+/// A hit that was stored without a look at the scene becomes what it is.
+void EmbreeTracer::finish(const Packet& p, int lane, Hit& hit) const {
   const auto id = [&](int row) { return std::bit_cast<unsigned>(p.row(row)[lane]); };
   const EmbreeIds ids{id(geom_row), id(prim_row), id(inst_row)};
   if (ids.geom == RTC_INVALID_GEOMETRY_ID) {
     hit.status = p.status[lane];
     return;
   }
-  if (p.odd) hit.t = p.context.shift[lane] + hit.t * p.context.scale[lane];
-  if (maker_.is_triangle(ids)) return maker_.finish_triangle(ids, hit);
-  const double t = precision_ == Precision::fast ? hit.t : p.context.nearest[lane];
-  maker_.quadric(ray, ids, hit.u, t, hit);
+  const bool triangle = maker_.is_triangle(ids), embrees_t = triangle || precision_ == Precision::fast;
+  if (!embrees_t)
+    hit.t = p.context.nearest[lane];
+  else if (p.odd)
+    hit.t = p.context.shift[lane] + hit.t * p.context.scale[lane];
+  if (triangle)
+    maker_.finish_triangle(ids, hit);
+  else if (instances_)
+    maker_.finish_quadric(ids, hit);
 }
 
 void EmbreeTracer::store(std::span<const Ray> rays, const Packet& p, Hit* hits) const {
-  const std::uint32_t only_mesh = scene_.level(RTC_INVALID_GEOMETRY_ID).only_mesh;
+  const EmbreeScene::Level& top = scene_.level(RTC_INVALID_GEOMETRY_ID);
+  // What of a group was hit is not told by its geomID.
+  const QuadricRows rows{top.first_bucket, precision_ == Precision::fast ? nullptr : p.context.nearest};
+  const QuadricRows* quadrics = instances_ || top.buckets.empty() ? nullptr : &rows;
   if (rays.size() < static_cast<std::size_t>(p.lanes)) {
     Hit all[packet_size];
-    code_.store(p.numbers, p.lanes, only_mesh, all);
+    code_.store(p.numbers, p.lanes, top.only_mesh, quadrics, all);
     std::copy_n(all, rays.size(), hits);
   } else {
-    code_.store(p.numbers, p.lanes, only_mesh, hits);
+    code_.store(p.numbers, p.lanes, top.only_mesh, quadrics, hits);
   }
-  if (only_one_mesh_ && !p.odd) return;
-  for (std::size_t i = 0; i < rays.size(); ++i) finish(rays[i], p, static_cast<int>(i), hits[i]);
+  if (ids_are_known_ && !p.odd) return;
+  for (std::size_t i = 0; i < rays.size(); ++i) finish(p, static_cast<int>(i), hits[i]);
 }
 
 void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const {

@@ -54,6 +54,12 @@ struct OrdinaryRays {
   double shortest = 0, longest = 0;  ///< of a direction
 };
 
+/// How the callbacks' hits of quadrics are told from Embree's of triangles (see record() in isa/quadrics.inl).
+struct QuadricRows {
+  unsigned first_geometry;  ///< quadrics have this geomID or a higher one
+  const double* t;          ///< of their hits; null where Embree's is theirs
+};
+
 /// What is done to whole packets of 8 or 16 lanes, `numbers` being those of a Packet; one of each instruction set.
 struct PacketCode {
   /// Loads the rays when all of them are ordinary, else returns false. Origin, tnear, direction and tfar are written,
@@ -68,8 +74,9 @@ struct PacketCode {
   void (*spread)(const float* numbers, int lanes, RTCRayHit* singles);
   void (*gather)(const RTCRayHit* singles, int lanes, float* numbers);
 
-  /// Writes Embree's answers, as if all were hits of the triangles of `object`, or misses.
-  void (*store)(const float* numbers, int lanes, std::uint32_t object, Hit* hits);
+  /// Writes Embree's answers as misses, hits of quadrics unless `quadrics` is null, and hits of the triangles of
+  /// `object`.
+  void (*store)(const float* numbers, int lanes, std::uint32_t object, const QuadricRows* quadrics, Hit* hits);
 };
 
 const PacketCode& packet_code(Isa isa);

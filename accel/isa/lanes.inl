@@ -2,6 +2,8 @@
 // with this may not instantiate functions that other translation units share, or the linker could put this instruction
 // set's code where another is expected: all is inlined or lives in the ISA's namespace.
 
+#include <cstddef>
+
 #include "accel/kernels/kernels.h"
 
 namespace rayengine::ISA {
@@ -52,14 +54,23 @@ INLINE void transpose(const double* column0, const double* column1, const double
   write(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
 }
 
+template <std::size_t bytes>
+struct WordsOf {
+  typedef long long type __attribute__((vector_size(bytes)));
+};
+
+/// Whether no lane of a mask is set: half is laid on half, since compilers would look at lane after lane.
 template <class MASK>
 INLINE bool none(MASK mask) {
-  if constexpr (kernels::is_lanes<MASK>) {
-    bool any = false;
-    for (unsigned i = 0; i < sizeof(MASK) / sizeof(mask[0]); ++i) any |= mask[i] != 0;
-    return !any;
-  } else {
+  if constexpr (!kernels::is_lanes<MASK>) {
     return !mask;
+  } else if constexpr (sizeof(MASK) > 16) {
+    using Half = typename WordsOf<sizeof(MASK) / 2>::type;
+    const auto* half = reinterpret_cast<const char*>(&mask);
+    return none(read<Half>(half) | read<Half>(half + sizeof(Half)));
+  } else {
+    const auto words = read<WordsOf<16>::type>(&mask);
+    return (words[0] | words[1]) == 0;
   }
 }
 

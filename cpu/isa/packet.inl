@@ -126,7 +126,7 @@ bool keep_together(const float* numbers, int lanes) {
   return none(apart);
 }
 
-/// Unit normals as three rows, from those of triangles, and zero where nothing was hit.
+/// Unit normals as three rows, from those that Embree and the callbacks wrote, and zero where nothing was hit.
 INLINE void normalise(const float* numbers, int lanes, float (*unit)[packet_size]) {
   constexpr float least = std::numeric_limits<float>::min();
   const float* const from = numbers + normal_x_row * lanes;
@@ -138,7 +138,8 @@ INLINE void normalise(const float* numbers, int lanes, float (*unit)[packet_size
     const auto moderate = (largest > 1e-15f) & (largest < 1e15f);  // squares of others would vanish
     const Wide scale = moderate ? one : 1 / kernels::larger(largest, splat<Wide>(least));
     const Wide a = x * scale, b = y * scale, c = z * scale;
-    const Wide per_length = 1 / kernels::root((a * a + b * b) + c * c);
+    const Wide square = kernels::larger((a * a + b * b) + c * c, splat<Wide>(least));  // quadrics have singular points
+    const Wide per_length = 1 / kernels::root(square);
     const WideInts hit = read<WideInts>(numbers + geom_row * lanes + i) != -1;
     write(unit[0] + i, (WideInts)(a * per_length) & hit);
     write(unit[1] + i, (WideInts)(b * per_length) & hit);
@@ -180,19 +181,37 @@ void gather(const RTCRayHit* singles, int lanes, float* numbers) {
     }
 }
 
-void store(const float* numbers, int lanes, std::uint32_t object, Hit* hits) {
+/// What four hits are of, and where.
+struct FourHits {
+  Words hit, object, primitive, u, v;
+  Four t;
+};
+
+/// Makes hits of quadrics what they are.
+INLINE void put_quadrics(const QuadricRows& quadrics, Words geometry, int first, FourHits& h) {
+  const Words is_quadric = h.hit & (geometry >= static_cast<int>(quadrics.first_geometry));
+  h.object = is_quadric ? h.v : h.object;
+  h.primitive = is_quadric ? __builtin_convertvector((FourFloats)h.u, Words) : h.primitive;
+  h.u &= ~is_quadric, h.v &= ~is_quadric;
+  typedef long long Bits __attribute__((vector_size(32)));
+  if (quadrics.t) h.t = __builtin_convertvector(is_quadric, Bits) ? read<Four>(quadrics.t + first) : h.t;
+}
+
+void store(const float* numbers, int lanes, std::uint32_t object, const QuadricRows* quadrics, Hit* hits) {
   alignas(64) float normal[3][packet_size];
   normalise(numbers, lanes, normal);
   for (int i = 0; i < lanes; i += 4) {
     const auto row = [&](int r) { return read<Words>(numbers + r * lanes + i); };
-    const Words hit = row(geom_row) != -1;
-    const auto t = __builtin_convertvector((FourFloats)row(tfar_row), Four);
+    FourHits h{row(geom_row) != -1, Words{} + static_cast<int>(object),
+               row(prim_row),       row(u_row),
+               row(v_row),          __builtin_convertvector((FourFloats)row(tfar_row), Four)};
+    if (quadrics) put_quadrics(*quadrics, row(geom_row), i, h);
     auto* const out = reinterpret_cast<char*>(hits + i);  // 16 bytes each: t, error; ids, barycentrics; normal, status
-    for (int k = 0; k < 4; ++k) write(out + k * sizeof(Hit), Pair{hit[k] ? t[k] : __builtin_inf(), 0});
-    store_columns(static_cast<int>(object) | ~hit, row(prim_row) | ~hit, row(u_row) & hit, row(v_row) & hit,
-                  out + offsetof(Hit, object), sizeof(Hit));
+    for (int k = 0; k < 4; ++k) write(out + k * sizeof(Hit), Pair{h.hit[k] ? h.t[k] : __builtin_inf(), 0});
+    store_columns(h.object | ~h.hit, h.primitive | ~h.hit, h.u & h.hit, h.v & h.hit, out + offsetof(Hit, object),
+                  sizeof(Hit));
     store_columns(read<Words>(normal[0] + i), read<Words>(normal[1] + i), read<Words>(normal[2] + i),
-                  hit & static_cast<int>(status_hit), out + offsetof(Hit, normal), sizeof(Hit));
+                  h.hit & static_cast<int>(status_hit), out + offsetof(Hit, normal), sizeof(Hit));
   }
 }
 

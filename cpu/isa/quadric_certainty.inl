@@ -19,11 +19,6 @@ INLINE FormSize size_of(const QuadricMatrix& matrix) {
           size_of(m[3]) + size_of(m[6]) + size_of(m[8]), size_of(m[9])};
 }
 
-template <class REAL>
-INLINE REAL largest_of(const Vec3<REAL>& v) {
-  return kernels::larger(kernels::larger(kernels::magnitude(v.x), kernels::magnitude(v.y)), kernels::magnitude(v.z));
-}
-
 /// A ray in a quadric's object space from its closest approach on, and how wrong it is.
 template <class REAL>
 struct Approach {
@@ -150,9 +145,7 @@ INLINE void certain_crossings(const Geometry& geometry, const Quadric& q, double
   constexpr QuadricType type = type_of(kind);
   const bool capped = kind != ball_kind && q.capped;
   auto active = rays.active;
-  const glm::dvec3& c = q.to_object.origin;
-  const Vec3<REAL> from{rays.o.x - splat<REAL>(c.x), rays.o.y - splat<REAL>(c.y), rays.o.z - splat<REAL>(c.z)};
-  const REAL o_size = norm * (largest_of(from) + o_extra);
+  const REAL o_size = norm * (largest_of(from_origin(q.to_object, rays.o)) + o_extra);
   Approach<REAL> a;
   a.d_size = norm * d_size;
   Vec3<REAL> o = rays.o;

@@ -31,6 +31,11 @@ struct Found {
 INLINE double column(const glm::dmat3& m, int c, int r) { return (&m[c].x)[r]; }
 
 template <class REAL>
+INLINE REAL largest_of(const Vec3<REAL>& v) {
+  return kernels::larger(kernels::larger(kernels::magnitude(v.x), kernels::magnitude(v.y)), kernels::magnitude(v.z));
+}
+
+template <class REAL>
 INLINE Vec3<REAL> turned(const WorldToObject& map, const Vec3<REAL>& v) {
   const auto row = [&](int r) {
     return (splat<REAL>(column(map.linear, 0, r)) * v.x + splat<REAL>(column(map.linear, 1, r)) * v.y) +
@@ -45,10 +50,13 @@ INLINE Vec3<REAL> scaled(REAL k, const Vec3<REAL>& v) {
 }
 
 template <class REAL>
+INLINE Vec3<REAL> from_origin(const WorldToObject& map, const Vec3<REAL>& p) {
+  return {p.x - splat<REAL>(map.origin.x), p.y - splat<REAL>(map.origin.y), p.z - splat<REAL>(map.origin.z)};
+}
+
+template <class REAL>
 INLINE void to_object(const WorldToObject& map, Vec3<REAL>& o, Vec3<REAL>& d) {
-  const Vec3<REAL> from{o.x - splat<REAL>(map.origin.x), o.y - splat<REAL>(map.origin.y),
-                        o.z - splat<REAL>(map.origin.z)};
-  o = turned(map, from);
+  o = turned(map, from_origin(map, o));
   d = turned(map, d);
 }
 
@@ -56,7 +64,7 @@ INLINE void to_object(const WorldToObject& map, Vec3<REAL>& o, Vec3<REAL>& d) {
 template <class REAL>
 INLINE void to_unit_ball(const WorldToObject& map, Vec3<REAL>& o, Vec3<REAL>& d) {
   const REAL k = splat<REAL>(column(map.linear, 0, 0));
-  o = scaled(k, {o.x - splat<REAL>(map.origin.x), o.y - splat<REAL>(map.origin.y), o.z - splat<REAL>(map.origin.z)});
+  o = scaled(k, from_origin(map, o));
   d = scaled(k, d);
 }
 
@@ -207,6 +215,48 @@ INLINE Found<REAL> intersect(const Geometry& geometry, const Quadric& q, const R
   const auto nearer = kernels::either(best.t < rays.nearest, tie);
   best.hit = kernels::both(kernels::both(nearer, best.t < largest), rays.active);
   return best;
+}
+
+/// Half the gradient of a quadric's form in object space.
+template <QuadricType type, class REAL>
+INLINE Vec3<REAL> gradient(const Geometry& geometry, const Quadric& q, const Vec3<REAL>& p) {
+  if constexpr (type == QuadricType::general) {
+    const auto& matrix = geometry.forms.data()[q.form].matrix;
+    const double* m = &matrix.front();
+    const auto row = [&](int x, int y, int z, int one) {
+      return ((splat<REAL>(m[x]) * p.x + splat<REAL>(m[y]) * p.y) + splat<REAL>(m[z]) * p.z) + splat<REAL>(m[one]);
+    };
+    return {row(0, 1, 2, 3), row(1, 4, 5, 6), row(2, 5, 7, 8)};
+  } else {
+    constexpr Form m = form<type>();
+    return {splat<REAL>(m.A) * p.x, splat<REAL>(m.E) * p.y, splat<REAL>(m.H) * p.z + splat<REAL>(m.I)};
+  }
+}
+
+/// Normals where a quadric was hit, in the space of its geometry, their largest component near 1; zero where it is
+/// singular.
+template <int kind, class REAL>
+INLINE Vec3<REAL> outward(const Geometry& geometry, const Quadric& q, const Rays<REAL>& rays,
+                          const Found<REAL>& found) {
+  constexpr QuadricType type = type_of(kind);
+  const WorldToObject& map = q.to_object;
+  const REAL t = found.t, one = splat<REAL>(1);
+  const Vec3<REAL> at{rays.o.x + t * rays.d.x, rays.o.y + t * rays.d.y, rays.o.z + t * rays.d.z};
+  const Vec3<REAL> from = from_origin(map, at);
+  if constexpr (kind == ball_kind) return scaled(splat<REAL>(column(map.linear, 0, 0)), from);
+  Vec3<REAL> n = gradient<type>(geometry, q, turned(map, from));
+  if (q.capped) {
+    const auto side = found.part == 0;
+    n.x = kernels::pick(side, n.x, REAL{}), n.y = kernels::pick(side, n.y, REAL{});
+    n.z = kernels::pick(side, n.z, kernels::pick(found.part == 1, -one, one));
+  }
+  const auto along = [&](int c) {
+    return (splat<REAL>(column(map.linear, c, 0)) * n.x + splat<REAL>(column(map.linear, c, 1)) * n.y) +
+           splat<REAL>(column(map.linear, c, 2)) * n.z;
+  };
+  const Vec3<REAL> world{along(0), along(1), along(2)};
+  const REAL largest = largest_of(world);
+  return scaled(kernels::pick(largest > 0, one / largest, REAL{}), world);
 }
 
 }  // namespace

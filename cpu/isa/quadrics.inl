@@ -6,15 +6,16 @@
 namespace rayengine::ISA {
 namespace {
 
-/// As many ints as there are lanes of floats (4 bytes) or doubles (8).
-template <int bytes>
-struct IntLanes {
-  typedef int type __attribute__((vector_size(ISA_BYTES)));
+/// As many ints, or floats, as there are lanes of REAL.
+template <class REAL>
+struct Narrow {
+  typedef int Ints __attribute__((vector_size(4 * lane_count<REAL>)));
+  typedef float Floats __attribute__((vector_size(4 * lane_count<REAL>)));
 };
-template <>
-struct IntLanes<8> {
-  typedef int type __attribute__((vector_size(ISA_BYTES / 2)));
-};
+template <class REAL>
+using Ints = typename Narrow<REAL>::Ints;
+template <class REAL>
+using Floats = typename Narrow<REAL>::Floats;
 
 /// The smallest float that is not below t.
 INLINE float round_up(double t) {
@@ -43,8 +44,7 @@ INLINE REAL embree_end(const Call& call, int first) {
   const QuadricContext& c = *call.context;
   REAL end;
   if constexpr (kernels::is_lanes<REAL>) {
-    typedef float Floats __attribute__((vector_size(ISA_BYTES / 2)));
-    end = __builtin_convertvector(read<Floats>(tfar), REAL);
+    end = __builtin_convertvector(read<Floats<REAL>>(tfar), REAL);
   } else {
     end = static_cast<double>(*tfar);
   }
@@ -87,31 +87,69 @@ INLINE Rays<REAL> gather(const Call& call, int first) {
   else
     rays = gather_float<REAL>(call, first);
   if constexpr (kernels::is_lanes<REAL>) {
-    using Ints = typename IntLanes<sizeof(typename kernels::Scalar<REAL>::type)>::type;
-    rays.active = __builtin_convertvector(read<Ints>(call.valid + first), kernels::Mask<REAL>);
+    rays.active = __builtin_convertvector(read<Ints<REAL>>(call.valid + first), kernels::Mask<REAL>);
   } else {
     rays.active = call.valid[first] != 0;
   }
   return rays;
 }
 
-template <class T>
-INLINE auto lane(const T& value, int i) {
-  if constexpr (std::is_arithmetic_v<T>)
-    return value;
-  else
-    return value[i];
+template <class REAL>
+inline constexpr bool is_double = sizeof(typename kernels::Scalar<REAL>::type) == sizeof(double);
+
+/// What is written of a hit, beside the ids that all lanes share: Embree's t, and what it keeps for triangles alone.
+/// The packet's makers of hits read it (see packet.inl): `u` is the part, `v` holds the bits of the object's id.
+enum HitField { normal_field, u_field = 3, v_field, prim_field, geom_field, inst_field };
+
+INLINE void record(const Call& call, unsigned ray, double t, float part, const Vec3<float>& normal, bool exact) {
+  QuadricContext& c = *call.context;
+  if (exact) c.nearest[ray] = t, c.object[ray] = call.quadric->object;
+  RTCRayN_tfar(call.ray, call.N, ray) = exact ? round_up((t - c.shift[ray]) * c.rate[ray]) : static_cast<float>(t);
+  RTCHitN_Ng_x(call.hit, call.N, ray) = normal.x;
+  RTCHitN_Ng_y(call.hit, call.N, ray) = normal.y;
+  RTCHitN_Ng_z(call.hit, call.N, ray) = normal.z;
+  RTCHitN_u(call.hit, call.N, ray) = part;
+  RTCHitN_v(call.hit, call.N, ray) = read<float>(&call.quadric->object);
+  RTCHitN_primID(call.hit, call.N, ray) = call.prim;
+  RTCHitN_geomID(call.hit, call.N, ray) = call.geom;
+  RTCHitN_instID(call.hit, call.N, ray, 0) = call.inst;
 }
 
-INLINE void record(const Call& call, unsigned ray, double t, float part, bool exact) {
+/// Writes the lanes that were hit.
+template <class VALUE, class MASK>
+INLINE void put(void* to, MASK hit, VALUE value) {
+  write(static_cast<char*>(to), hit ? value : read<VALUE>(static_cast<char*>(to)));
+}
+
+/// The smallest floats that are not below t.
+template <class REAL>
+INLINE Floats<REAL> round_up(REAL t) {
+  const Floats<REAL> f = __builtin_convertvector(t, Floats<REAL>);
+  const auto below = __builtin_convertvector(__builtin_convertvector(f, REAL) < t, Ints<REAL>);
+  return below ? f + (kernels::magnitude(f) * 0x1p-23f + 0x1p-149f) : f;
+}
+
+template <class REAL>
+INLINE void record(const Call& call, int first, const Found<REAL>& found, const Vec3<REAL>& normal) {
   QuadricContext& c = *call.context;
-  c.nearest[ray] = t;
-  c.object[ray] = call.quadric->object;
-  RTCRayN_tfar(call.ray, call.N, ray) = exact ? round_up((t - c.shift[ray]) * c.rate[ray]) : static_cast<float>(t);
-  RTCHitN_geomID(call.hit, call.N, ray) = call.geom;
-  RTCHitN_primID(call.hit, call.N, ray) = call.prim;
-  RTCHitN_instID(call.hit, call.N, ray, 0) = call.inst;
-  RTCHitN_u(call.hit, call.N, ray) = part;
+  const Ints<REAL> hit = __builtin_convertvector(found.hit, Ints<REAL>);
+  float* const tfar = &RTCRayN_tfar(call.ray, call.N, static_cast<unsigned>(first));
+  if constexpr (is_double<REAL>) {
+    put(c.nearest + first, found.hit, found.t);
+    put(c.object + first, found.hit, splat<REAL>(call.quadric->object));
+    put(tfar, hit, round_up((found.t - read<REAL>(c.shift + first)) * read<REAL>(c.rate + first)));
+  } else {
+    put(tfar, hit, found.t);
+  }
+  const auto field = [&](int i) { return reinterpret_cast<float*>(call.hit) + i * static_cast<int>(call.N) + first; };
+  const auto put_real = [&](int i, const REAL& value) {
+    put(field(i), hit, __builtin_convertvector(value, Floats<REAL>));
+  };
+  const auto put_id = [&](int i, unsigned id) { put(field(i), hit, Ints<REAL>{} + static_cast<int>(id)); };
+  put_real(normal_field, normal.x), put_real(normal_field + 1, normal.y), put_real(normal_field + 2, normal.z);
+  put_real(u_field, found.part);
+  put_id(v_field, call.quadric->object);
+  put_id(prim_field, call.prim), put_id(geom_field, call.geom), put_id(inst_field, call.inst);
 }
 
 template <int kind, class REAL>
@@ -120,9 +158,14 @@ INLINE void closest_lanes(const Call& call, int first) {
   if (none(rays.active)) return;
   const Found<REAL> found = intersect<kind>(*call.bucket->geometry, *call.quadric, rays);
   if (none(found.hit)) return;
-  constexpr bool exact = sizeof(typename kernels::Scalar<REAL>::type) == sizeof(double);
-  for (int i = 0; i < lane_count<REAL>; ++i)
-    if (lane(found.hit, i)) record(call, first + i, lane(found.t, i), static_cast<float>(lane(found.part, i)), exact);
+  const Vec3<REAL> normal = outward<kind>(*call.bucket->geometry, *call.quadric, rays, found);
+  if constexpr (kernels::is_lanes<REAL>) {
+    record(call, first, found, normal);
+  } else {
+    const auto number = [](REAL a) { return static_cast<float>(a); };
+    record(call, static_cast<unsigned>(first), found.t, number(found.part),
+           {number(normal.x), number(normal.y), number(normal.z)}, is_double<REAL>);
+  }
 }
 
 template <int kind, class REAL>
@@ -130,8 +173,12 @@ INLINE void any_lanes(const Call& call, int first) {
   const Rays<REAL> rays = gather<REAL>(call, first);
   if (none(rays.active)) return;
   const Found<REAL> found = intersect<kind>(*call.bucket->geometry, *call.quadric, rays);
-  for (int i = 0; i < lane_count<REAL>; ++i)
-    if (lane(found.hit, i)) RTCRayN_tfar(call.ray, call.N, first + i) = -std::numeric_limits<float>::infinity();
+  float* const tfar = &RTCRayN_tfar(call.ray, call.N, static_cast<unsigned>(first));
+  constexpr float ended = -std::numeric_limits<float>::infinity();
+  if constexpr (kernels::is_lanes<REAL>)
+    put(tfar, __builtin_convertvector(found.hit, Ints<REAL>), splat<Floats<REAL>>(ended));
+  else if (found.hit)
+    *tfar = ended;
 }
 
 /// Double counts t as we do; single precision as Embree does.

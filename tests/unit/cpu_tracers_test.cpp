@@ -7,6 +7,7 @@
 #include "accel/random.h"
 #include "cpu/bvh_tracer.h"
 #include "cpu/embree_tracer.h"
+#include "cpu/reference_tracer.h"
 #include "engine/measure/rays.h"
 
 namespace rayengine {
@@ -150,6 +151,70 @@ TEST_P(CpuTracer, AllHitsAreSortedAndComplete) {
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(lists.hits[static_cast<std::size_t>(i)].object, objects[i]);
     EXPECT_EQ(lists.hits[static_cast<std::size_t>(i)].primitive, parts[i]);
+  }
+}
+
+/// One of every type, stretched and turned, caps where there are any; the same again as an instance that turns them
+/// once more.
+std::shared_ptr<const Geometry> every_type() {
+  GeometryBuilder types;
+  for (std::size_t i = 0; i < quadric_type_count; ++i) {
+    const auto type = static_cast<QuadricType>(i);
+    QuadricShape shape{.type = type};
+    shape.capped = type == QuadricType::cylinder || type == QuadricType::cone || type == QuadricType::paraboloid;
+    if (type == QuadricType::general) {
+      shape.matrix = {1, 0.2, 0, 0, 1.5, 0, 0.1, -1, 0, -0.25};
+      shape.box = Box{glm::dvec3(-1, -1, -1), glm::dvec3(1, 1, 1)};
+    }
+    if (type == QuadricType::plane) continue;  // has no end
+    types.add(shape, 0,
+              Affine::translate({3 * static_cast<double>(i % 4), 3 * static_cast<double>(i / 4), 0}) *
+                  Affine::rotate({1, 2, 3}, 40 * static_cast<double>(i)) * Affine::scale({1, 0.7, 1.2}));
+  }
+  types.add(QuadricShape{}, 0, Affine::translate({9, 6, 0}));  // no type of its own, but a kind
+  const auto group = types.build();
+  GeometryBuilder builder;
+  for (std::uint32_t i = 0; i < group->objects.size(); ++i) builder.add(*group, i);
+  builder.add(group, Affine::translate({0, 0, 5}) * Affine::rotate({1, 1, 0}, 20) * Affine::scale({1, 1.5, 0.8}));
+  return builder.build();
+}
+
+void expect_normals_of_reference(Tracer& tracer, const std::shared_ptr<const Geometry>& geometry, float slack) {
+  const std::vector<Ray> rays = random_rays(geometry->bounds, 10000);
+  std::vector<Hit> exact(rays.size()), hits(rays.size());
+  make_reference_tracer(geometry)->closest(rays, exact, RayClass::bounce);
+  for (const RayClass c : {RayClass::primary, RayClass::bounce}) {
+    tracer.closest(rays, hits, c);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!exact[i].hit() || hits[i].object != exact[i].object || hits[i].primitive != exact[i].primitive) continue;
+      ++compared;
+      for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(hits[i].normal[axis], exact[i].normal[axis], slack) << i;
+      EXPECT_EQ(hits[i].u, 0);
+      EXPECT_EQ(hits[i].v, 0);
+    }
+    EXPECT_GT(compared, 1000u);
+  }
+}
+
+TEST_P(CpuTracer, NormalsOfQuadricsAreThoseOfTheReference) {
+  const auto geometry = every_type();
+  expect_normals_of_reference(*tracer_of(geometry), geometry, 3e-7f);
+}
+
+TEST(EmbreeTracer, NormalsOfQuadricsAreGoodEnoughAtFast) {
+  const auto geometry = every_type();
+  expect_normals_of_reference(*make_embree_tracer(geometry, Precision::fast), geometry, 1e-3f);
+}
+
+TEST(EmbreeTracer, AnApexHasNoNormal) {
+  GeometryBuilder builder;
+  builder.add(QuadricShape{.type = QuadricType::cone, .clip = {{-1, 1}}});
+  const auto tracer = make_embree_tracer(builder.build(), Precision::robust);
+  for (const RayClass c : {RayClass::primary, RayClass::bounce}) {
+    const Hit hit = closest(*tracer, {{0, 0, -2}, 0, {0.5, 0, 2}, infinity}, c);
+    ASSERT_TRUE(hit.hit());
+    EXPECT_FALSE(std::isnan(hit.normal.x + hit.normal.y + hit.normal.z));
   }
 }
 
