@@ -112,7 +112,7 @@ std::vector<Ray> random_camera_rays(const Camera& camera, std::size_t count, std
   for (std::size_t i = 0; i < count; ++i) {
     Random random(seed, i);
     const double x = random.between(0, camera.size.x), y = random.between(0, camera.size.y);
-    rays.push_back(frame.ray(x, y));
+    frame.start(rays.emplace_back(), x, y);
   }
   return rays;
 }

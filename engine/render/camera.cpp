@@ -1,7 +1,5 @@
 #include "engine/render/camera.h"
 
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "accel/tracer.h"
@@ -35,15 +33,10 @@ CameraFrame::CameraFrame(const Camera& camera) : from_(camera.from), middle_(0.5
   right_ *= pixel;
 }
 
-glm::dvec3 CameraFrame::direction(double x, double y) const {
-  return center_ + (x - middle_.x) * right_ + (middle_.y - y) * up_;
+Ray camera_ray(const Camera& camera, double x, double y) {
+  Ray ray;
+  CameraFrame(camera).start(ray, x, y);
+  return ray;
 }
-
-Ray CameraFrame::ray(double x, double y) const {
-  const glm::dvec3 d = direction(x, y);
-  return {from_, 0, (1 / std::sqrt(glm::dot(d, d))) * d, infinity};
-}
-
-Ray camera_ray(const Camera& camera, double x, double y) { return CameraFrame(camera).ray(x, y); }
 
 }  // namespace rayengine

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <glm/geometric.hpp>
+
 #include "accel/ray.h"
 #include "engine/scene/scene.h"
 
@@ -13,9 +16,16 @@ class CameraFrame {
   explicit CameraFrame(const Camera& camera);
 
   /// From the eye to pixel coordinates (x, y), at unit distance along the view.
-  glm::dvec3 direction(double x, double y) const;
+  glm::dvec3 direction(double x, double y) const { return center_ + (x - middle_.x) * right_ + (middle_.y - y) * up_; }
   /// The ray through pixel coordinates (x, y), in pixels from the upper left corner; its direction has unit length.
-  Ray ray(double x, double y) const;
+  /// Written in place: a copy would wait for all of its parts.
+  void start(Ray& ray, double x, double y) const {
+    const glm::dvec3 d = direction(x, y);
+    ray.origin = from_;
+    ray.tmin = 0;
+    ray.direction = (1 / std::sqrt(glm::dot(d, d))) * d;
+    ray.tmax = infinity;
+  }
 
  private:
   glm::dvec3 from_, center_;  ///< `center_` is the direction through the image's middle

@@ -36,14 +36,14 @@ void Tiling::pixels(std::size_t tile, std::vector<glm::ivec2>& result) const {
     if (const glm::ivec2 p = corner + offset; p.x < size.x && p.y < size.y) result.push_back(p);
 }
 
-Ray TileRenderer::ray(const glm::ivec2& pixel, const glm::dvec2& offset) const {
-  return camera_.ray(pixel.x + 0.5 + offset.x, pixel.y + 0.5 + offset.y);
+void TileRenderer::start(Ray& ray, const glm::ivec2& pixel, const glm::dvec2& offset) const {
+  camera_.start(ray, pixel.x + 0.5 + offset.x, pixel.y + 0.5 + offset.y);
 }
 
 void TileRenderer::sample(int first, int last) {
   Ray* out = waves_.primary(pixels_.size() * static_cast<std::size_t>(last - first)).data();
   for (const glm::ivec2& p : pixels_)
-    for (int s = first; s < last; ++s) *out++ = ray(p, sampler_.offset(p.x, p.y, s));
+    for (int s = first; s < last; ++s) start(*out++, p, sampler_.offset(p.x, p.y, s));
   const glm::vec3* seen = waves_.radiance().data();
   for (glm::dvec3& color : colors_)
     for (int s = first; s < last; ++s) color += *seen++;
@@ -60,7 +60,7 @@ void TileRenderer::write_colors(Image& image) const {
 
 void TileRenderer::trace_aovs(Image& image) {
   aov_rays_.clear();
-  for (const glm::ivec2& p : pixels_) aov_rays_.push_back(ray(p, {0, 0}));
+  for (const glm::ivec2& p : pixels_) start(aov_rays_.emplace_back(), p, {0, 0});
   aov_hits_.resize(aov_rays_.size());
   gate_.closest(aov_rays_, aov_hits_, RayClass::primary);
   aov_ray_count_ += aov_rays_.size();

@@ -48,7 +48,7 @@ class TileRenderer {
   void add_to(RenderStats& stats) const;
 
  private:
-  Ray ray(const glm::ivec2& pixel, const glm::dvec2& offset) const;
+  void start(Ray& ray, const glm::ivec2& pixel, const glm::dvec2& offset) const;
   void sample(int first, int last);
   void write_colors(Image& image) const;
   void trace_aovs(Image& image);
