@@ -7,7 +7,8 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/RayEngine)
 foreach(header accel/box.h accel/geometry.h accel/quadric.h accel/ray.h accel/surface.h accel/tracer.h accel/transform.h
     engine/measure/compare.h engine/plan/device.h engine/plan/model.h engine/plan/plan.h engine/plan/planned.h
     engine/plan/recognise/recognise.h
-    engine/plan/statistics.h engine/plan/verify.h engine/render/render.h engine/scene/image.h engine/scene/scene.h engine/tracers.h)
+    engine/plan/statistics.h engine/plan/verify.h engine/render/render.h engine/scene/image.h engine/scene/pixels.h
+    engine/scene/scene.h engine/tracers.h)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${header_folder}/${folder})
 endforeach()

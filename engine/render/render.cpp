@@ -1,6 +1,5 @@
 #include "engine/render/render.h"
 
-#include <sys/mman.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -73,18 +72,12 @@ std::vector<std::string> channels_for(const RenderOptions& options) {
   return names;
 }
 
-/// A black picture in large pages, where the system has them: to touch one first in small pages takes milliseconds.
-Image black_image(const glm::ivec2& size, std::vector<std::string> channels) {
+/// A picture that is yet to be written.
+Image blank_image(const glm::ivec2& size, std::vector<std::string> channels) {
   Image image;
   image.width = size.x, image.height = size.y;
   image.channels = std::move(channels);
-  const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * image.channels.size();
-  image.pixels.reserve(count);
-  void *begin = image.pixels.data(), *aligned = begin;
-  std::size_t space = count * sizeof(float);
-  constexpr std::size_t page = 4096;
-  if (std::align(page, page, aligned, space)) madvise(aligned, space / page * page, MADV_HUGEPAGE);  // or small ones
-  image.pixels.resize(count);
+  image.pixels.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * image.channels.size());
   return image;
 }
 
@@ -107,7 +100,7 @@ RenderResult render(const Scene& scene, Tracer& tracer, const RenderOptions& opt
   Picture picture{*scene.geometry, scene.lights,  materials, environment,
                   tracer.limits(), options.depth, nullptr,   scene.object_numbers};
   const PixelSampler sampler(options.spp);
-  RenderResult result{black_image(scene.camera.size, channels_for(options)), {}};
+  RenderResult result{blank_image(scene.camera.size, channels_for(options)), {}};
 
   // More threads than cores are given too, when asked for.
   const std::size_t workers = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -4,20 +4,23 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/pixels.h"
+
 namespace rayengine {
 
 /// Linear float pixels, rows from top to bottom, channels interleaved.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< conventional EXR names: R G B A, Z, N.X, ...
-  std::vector<float> pixels;          ///< width * height * channels.size()
+  Pixels pixels;                      ///< width * height * channels.size()
 
   Image() = default;
+  /// All zero.
   Image(int width, int height, std::vector<std::string> names)
       : width(width),
         height(height),
         channels(std::move(names)),
-        pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels.size()) {}
+        pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels.size(), 0.f) {}
 
   float* pixel(int x, int y) { return pixels.data() + offset(x, y); }
   const float* pixel(int x, int y) const { return pixels.data() + offset(x, y); }
