@@ -140,21 +140,12 @@ bool RayLoader::load(std::span<const Ray> rays, Packet& packet) const {
   return any;
 }
 
-void RayLoader::begin(Singles& singles) const {
-  begin(false, 1, singles.context, reinterpret_cast<float*>(singles.rays));
-}
-
-bool RayLoader::load(const Ray& ray, Singles& singles) const {
+bool RayLoader::load(const Ray& ray, Single& single) const {
+  auto* const numbers = reinterpret_cast<float*>(&single.ray);
+  begin(false, 1, single.context, numbers);
+  single.ray.hit.geomID = single.ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   std::uint32_t status;
-  singles.rays[0].hit.geomID = singles.rays[0].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  return load_lane(ray, 1, 0, singles.context, reinterpret_cast<float*>(singles.rays), status);
-}
-
-void RayLoader::copy_to_first(const QuadricContext& from, int lane, QuadricContext& to) {
-  to.ox[0] = from.ox[lane], to.oy[0] = from.oy[lane], to.oz[0] = from.oz[lane];
-  to.dx[0] = from.dx[lane], to.dy[0] = from.dy[lane], to.dz[0] = from.dz[lane];
-  to.tmin[0] = from.tmin[lane], to.nearest[0] = from.nearest[lane], to.object[0] = from.object[lane];
-  to.shift[0] = from.shift[lane], to.rate[0] = from.rate[lane], to.scale[0] = from.scale[lane];
+  return load_lane(ray, 1, 0, single.context, numbers, status);
 }
 
 }  // namespace rayengine

@@ -22,26 +22,25 @@ class RayLoader {
 
   /// Calls trace(context, ray) for each ray of a packet that can hit, as a packet of one lane.
   template <class Trace>
-  void trace_alone(Packet& packet, Singles& singles, const Trace& trace) const {
-    code_.spread(packet.numbers, packet.lanes, singles.rays);
+  void trace_alone(Packet& packet, const Trace& trace) const {
+    alignas(64) RTCRayHit alone[packet_size];
+    code_.spread(packet.numbers, packet.lanes, alone);
     for (int lane = 0; lane < packet.lanes; ++lane) {
       if (!packet.valid[lane]) continue;
-      if (reads_context_) copy_to_first(packet.context, lane, singles.context);
-      trace(&singles.context.embree, &singles.rays[lane]);
-      if (reads_context_) packet.context.nearest[lane] = singles.context.nearest[0];
+      packet.context.lane = lane;
+      trace(&packet.context.embree, &alone[lane]);
     }
-    code_.gather(singles.rays, packet.lanes, packet.numbers);
+    packet.context.lane = 0;
+    code_.gather(alone, packet.lanes, packet.numbers);
   }
-  void begin(Singles& singles) const;
-  /// One ray without a packet, as the first of `singles`; false when it cannot hit.
-  bool load(const Ray& ray, Singles& singles) const;
+  /// One ray without a packet; false when it cannot hit.
+  bool load(const Ray& ray, Single& single) const;
 
  private:
   struct Placed {
     double shift = 0, scale = 1, rate = 1;  // as in QuadricContext
     bool traced = true;
   };
-  static void copy_to_first(const QuadricContext& from, int lane, QuadricContext& to);
   void begin(bool coherent, int lanes, QuadricContext& context, float* numbers) const;
   bool is_ordinary(const Ray& ray) const;
   Placed place(const Ray& ray) const;

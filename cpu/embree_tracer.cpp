@@ -42,9 +42,9 @@ class EmbreeTracer final : public Tracer {
   void closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const;
   void any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const;
   void intersect(Packet& packet) const;
-  void intersect_alone(Packet& packet, Singles& singles) const;
+  void intersect_alone(Packet& packet) const;
   void occluded(Packet& packet) const;
-  void occluded_alone(Packet& packet, Singles& singles) const;
+  void occluded_alone(Packet& packet) const;
   void store(std::span<const Ray> rays, const Packet& packet, Hit* hits) const;
   void finish(const Packet& packet, int lane, Hit& hit) const;
   std::vector<Hit> all(const Ray& ray) const;
@@ -83,15 +83,14 @@ void EmbreeTracer::occluded(Packet& p) const {
     rtcOccluded8(p.valid, scene_.scene(), &p.context.embree, reinterpret_cast<RTCRay8*>(p.numbers));
 }
 
-void EmbreeTracer::intersect_alone(Packet& p, Singles& singles) const {
+void EmbreeTracer::intersect_alone(Packet& p) const {
   loader_.trace_alone(
-      p, singles, [&](RTCIntersectContext* context, RTCRayHit* ray) { rtcIntersect1(scene_.scene(), context, ray); });
+      p, [&](RTCIntersectContext* context, RTCRayHit* ray) { rtcIntersect1(scene_.scene(), context, ray); });
 }
 
-void EmbreeTracer::occluded_alone(Packet& p, Singles& singles) const {
-  loader_.trace_alone(p, singles, [&](RTCIntersectContext* context, RTCRayHit* ray) {
-    rtcOccluded1(scene_.scene(), context, &ray->ray);
-  });
+void EmbreeTracer::occluded_alone(Packet& p) const {
+  loader_.trace_alone(
+      p, [&](RTCIntersectContext* context, RTCRayHit* ray) { rtcOccluded1(scene_.scene(), context, &ray->ray); });
 }
 
 /// A hit that was stored without a look at the scene becomes what it is.
@@ -131,9 +130,7 @@ void EmbreeTracer::store(std::span<const Ray> rays, const Packet& p, Hit* hits) 
 
 void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hits, RayClass ray_class) const {
   Packet packet;
-  Singles singles;
   loader_.begin(is_coherent(ray_class), packet);
-  loader_.begin(singles);
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
@@ -142,7 +139,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
       if (is_coherent(ray_class) || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
         intersect(packet);
       else
-        intersect_alone(packet, singles);
+        intersect_alone(packet);
     }
     store(now, packet, &hits[first]);
   }
@@ -150,9 +147,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
 
 void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
   Packet packet;
-  Singles singles;
   loader_.begin(true, packet);
-  loader_.begin(singles);
   const bool coherent = is_coherent(ray_class) || mostly_triangles_;
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
@@ -161,7 +156,7 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
       if (coherent || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
         occluded(packet);
       else
-        occluded_alone(packet, singles);
+        occluded_alone(packet);
     }
     const float* tfar = packet.row(tfar_row);
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -198,12 +193,12 @@ void collect_triangle(const RTCFilterFunctionNArguments* args) {
 }
 
 std::vector<Hit> EmbreeTracer::all(const Ray& ray) const {
-  Singles singles;
-  loader_.begin(singles);
+  Single single;
   HitCollector collector;
-  singles.context.collector = &collector;
-  singles.context.embree.filter = collect_triangle;
-  if (loader_.load(ray, singles)) rtcIntersect1(filtering_->scene(), &singles.context.embree, singles.rays);
+  const bool traced = loader_.load(ray, single);
+  single.context.collector = &collector;
+  single.context.embree.filter = collect_triangle;
+  if (traced) rtcIntersect1(filtering_->scene(), &single.context.embree, &single.ray);
   std::vector<Hit> hits;
   for (const auto& e : collector.entries) {
     const EmbreeIds ids{e.geom, e.prim, e.inst};

@@ -42,10 +42,10 @@ struct Packet {
   const float* row(int r) const { return numbers + r * lanes; }
 };
 
-/// The rays of a packet as Embree takes them one by one, and what the callbacks see of the one that is traced.
-struct Singles {
+/// A ray without a packet.
+struct Single {
   QuadricContext context;
-  alignas(64) RTCRayHit rays[packet_size];
+  alignas(64) RTCRayHit ray;
 };
 
 /// Rays within these bounds go to Embree as they are. Sums of absolute components are compared, which NaN never passes.

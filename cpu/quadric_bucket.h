@@ -40,6 +40,7 @@ struct alignas(64) QuadricContext {
   RTCIntersectContext embree;
   const std::vector<Instance>* instances = nullptr;  ///< by Embree's instID
   HitCollector* collector = nullptr;
+  int lane = 0;  ///< where a ray is found that is traced alone
   alignas(64) double ox[packet_size], oy[packet_size], oz[packet_size];
   alignas(64) double dx[packet_size], dy[packet_size], dz[packet_size];
   alignas(64) double tmin[packet_size];

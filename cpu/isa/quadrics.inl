@@ -37,30 +37,38 @@ struct Call {
   unsigned geom, prim, inst;
 };
 
+/// Where the context holds lanes that begin with Embree's ray `first`.
+template <class REAL>
+INLINE int place(const Call& call, int first) {
+  return kernels::is_lanes<REAL> ? first : first + call.context->lane;
+}
+
 /// Embree's end of the rays, which a triangle may have brought nearer, in our t.
 template <class REAL>
 INLINE REAL embree_end(const Call& call, int first) {
   const float* tfar = &RTCRayN_tfar(call.ray, call.N, static_cast<unsigned>(first));
   const QuadricContext& c = *call.context;
+  const int at = place<REAL>(call, first);
   REAL end;
   if constexpr (kernels::is_lanes<REAL>) {
     end = __builtin_convertvector(read<Floats<REAL>>(tfar), REAL);
   } else {
     end = static_cast<double>(*tfar);
   }
-  return read<REAL>(c.shift + first) + end * read<REAL>(c.scale + first);
+  return read<REAL>(c.shift + at) + end * read<REAL>(c.scale + at);
 }
 
 /// Rays in double come from the context; those of instances are taken to the group's space, also in double.
 template <class REAL>
 INLINE Rays<REAL> gather_double(const Call& call, int first) {
   const QuadricContext& c = *call.context;
+  const int at = place<REAL>(call, first);
   Rays<REAL> rays;
-  rays.o = {read<REAL>(c.ox + first), read<REAL>(c.oy + first), read<REAL>(c.oz + first)};
-  rays.d = {read<REAL>(c.dx + first), read<REAL>(c.dy + first), read<REAL>(c.dz + first)};
-  rays.tmin = read<REAL>(c.tmin + first);
-  rays.nearest = kernels::smaller(read<REAL>(c.nearest + first), embree_end<REAL>(call, first));
-  rays.object = read<REAL>(c.object + first);
+  rays.o = {read<REAL>(c.ox + at), read<REAL>(c.oy + at), read<REAL>(c.oz + at)};
+  rays.d = {read<REAL>(c.dx + at), read<REAL>(c.dy + at), read<REAL>(c.dz + at)};
+  rays.tmin = read<REAL>(c.tmin + at);
+  rays.nearest = kernels::smaller(read<REAL>(c.nearest + at), embree_end<REAL>(call, first));
+  rays.object = read<REAL>(c.object + at);
   if (call.inst != RTC_INVALID_GEOMETRY_ID) to_object(c.instances->data()[call.inst].to_group, rays.o, rays.d);
   return rays;
 }
@@ -103,8 +111,9 @@ enum HitField { normal_field, u_field = 3, v_field, prim_field, geom_field, inst
 
 INLINE void record(const Call& call, unsigned ray, double t, float part, const Vec3<float>& normal, bool exact) {
   QuadricContext& c = *call.context;
-  if (exact) c.nearest[ray] = t, c.object[ray] = call.quadric->object;
-  RTCRayN_tfar(call.ray, call.N, ray) = exact ? round_up((t - c.shift[ray]) * c.rate[ray]) : static_cast<float>(t);
+  const int at = place<double>(call, static_cast<int>(ray));
+  if (exact) c.nearest[at] = t, c.object[at] = call.quadric->object;
+  RTCRayN_tfar(call.ray, call.N, ray) = exact ? round_up((t - c.shift[at]) * c.rate[at]) : static_cast<float>(t);
   RTCHitN_Ng_x(call.hit, call.N, ray) = normal.x;
   RTCHitN_Ng_y(call.hit, call.N, ray) = normal.y;
   RTCHitN_Ng_z(call.hit, call.N, ray) = normal.z;
