@@ -67,6 +67,17 @@ class EmbreeTracer final : public Tracer {
 /// Primary and shadow rays are coherent as they come.
 bool is_coherent(RayClass ray_class) { return ray_class != RayClass::bounce; }
 
+/// Has what comes next brought near while the packet before it is traced.
+template <class T>
+void fetch(std::span<T> next) {
+  for (T& item : next) __builtin_prefetch(&item, !std::is_const_v<T>);
+}
+
+template <class T>
+std::span<T> packet_at(std::span<T> all, std::size_t first, std::size_t lanes) {
+  return first < all.size() ? all.subspan(first, std::min(lanes, all.size() - first)) : std::span<T>();
+}
+
 constexpr float no_geometry = std::bit_cast<float>(RTC_INVALID_GEOMETRY_ID);
 
 void EmbreeTracer::intersect(Packet& p) const {
@@ -133,7 +144,9 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
   loader_.begin(is_coherent(ray_class), packet);
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
-    const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
+    const auto now = packet_at(rays, first, lanes);
+    fetch(packet_at(rays, first + lanes, lanes));
+    fetch(packet_at(hits, first, lanes));
     std::fill_n(packet.row(geom_row), 2 * lanes, no_geometry);  // and instances
     if (loader_.load(now, packet)) {
       if (is_coherent(ray_class) || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
@@ -151,7 +164,8 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
   const bool coherent = is_coherent(ray_class) || mostly_triangles_;
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
-    const auto now = rays.subspan(first, std::min(lanes, rays.size() - first));
+    const auto now = packet_at(rays, first, lanes);
+    fetch(packet_at(rays, first + lanes, lanes));
     if (loader_.load(now, packet)) {
       if (coherent || (!packet.odd && code_.keep_together(packet.numbers, packet.lanes)))
         occluded(packet);
