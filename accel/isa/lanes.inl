@@ -2,7 +2,7 @@
 // with this may not instantiate functions that other translation units share, or the linker could put this instruction
 // set's code where another is expected: all is inlined or lives in the ISA's namespace.
 
-#include <cstddef>
+#include <immintrin.h>
 
 #include "accel/kernels/kernels.h"
 
@@ -54,23 +54,22 @@ INLINE void transpose(const double* column0, const double* column1, const double
   write(row3, __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7));
 }
 
-template <std::size_t bytes>
-struct WordsOf {
-  typedef long long type __attribute__((vector_size(bytes)));
-};
-
-/// Whether no lane of a mask is set: half is laid on half, since compilers would look at lane after lane.
+/// Whether no lane of a mask is set. By hand, since compilers look at lane after lane.
 template <class MASK>
 INLINE bool none(MASK mask) {
   if constexpr (!kernels::is_lanes<MASK>) {
     return !mask;
-  } else if constexpr (sizeof(MASK) > 16) {
-    using Half = typename WordsOf<sizeof(MASK) / 2>::type;
-    const auto* half = reinterpret_cast<const char*>(&mask);
-    return none(read<Half>(half) | read<Half>(half + sizeof(Half)));
+  } else if constexpr (sizeof(MASK) == 16) {
+    return _mm_movemask_epi8(read<__m128i>(&mask)) == 0;
+  } else if constexpr (sizeof(MASK) == 32) {
+#ifdef __AVX__
+    return _mm256_testz_si256(read<__m256i>(&mask), read<__m256i>(&mask));
+#endif
   } else {
-    const auto words = read<WordsOf<16>::type>(&mask);
-    return (words[0] | words[1]) == 0;
+#ifdef __AVX512DQ__
+    const auto bits = read<__m512i>(&mask);
+    return (sizeof(mask[0]) == 8 ? _mm512_movepi64_mask(bits) : _mm512_movepi32_mask(bits)) == 0;
+#endif
   }
 }
 
