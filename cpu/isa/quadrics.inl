@@ -58,8 +58,9 @@ INLINE REAL embree_end(const Call& call, int first) {
   return read<REAL>(c.shift + at) + end * read<REAL>(c.scale + at);
 }
 
-/// Rays in double come from the context; those of instances are taken to the group's space, also in double.
-template <class REAL>
+/// Rays in double come from the context; those of instances are taken to the group's space, also in double. Who asks
+/// for any hit knows that none was found before.
+template <class REAL, bool any>
 INLINE Rays<REAL> gather_double(const Call& call, int first) {
   const QuadricContext& c = *call.context;
   const int at = place<REAL>(call, first);
@@ -67,8 +68,12 @@ INLINE Rays<REAL> gather_double(const Call& call, int first) {
   rays.o = {read<REAL>(c.ox + at), read<REAL>(c.oy + at), read<REAL>(c.oz + at)};
   rays.d = {read<REAL>(c.dx + at), read<REAL>(c.dy + at), read<REAL>(c.dz + at)};
   rays.tmin = read<REAL>(c.tmin + at);
-  rays.nearest = kernels::smaller(read<REAL>(c.nearest + at), embree_end<REAL>(call, first));
-  rays.object = read<REAL>(c.object + at);
+  rays.nearest = read<REAL>(c.nearest + at);
+  rays.object = REAL{};
+  if (!any) {
+    rays.nearest = kernels::smaller(rays.nearest, embree_end<REAL>(call, first));
+    rays.object = read<REAL>(c.object + at);
+  }
   if (call.inst != RTC_INVALID_GEOMETRY_ID) to_object(c.instances->data()[call.inst].to_group, rays.o, rays.d);
   return rays;
 }
@@ -87,11 +92,11 @@ INLINE Rays<REAL> gather_float(const Call& call, int first) {
   return rays;
 }
 
-template <class REAL>
+template <class REAL, bool any = false>
 INLINE Rays<REAL> gather(const Call& call, int first) {
   Rays<REAL> rays;
   if constexpr (sizeof(typename kernels::Scalar<REAL>::type) == sizeof(double))
-    rays = gather_double<REAL>(call, first);
+    rays = gather_double<REAL, any>(call, first);
   else
     rays = gather_float<REAL>(call, first);
   if constexpr (kernels::is_lanes<REAL>) {
@@ -179,7 +184,7 @@ INLINE void closest_lanes(const Call& call, int first) {
 
 template <int kind, class REAL>
 INLINE void any_lanes(const Call& call, int first) {
-  const Rays<REAL> rays = gather<REAL>(call, first);
+  const Rays<REAL> rays = gather<REAL, true>(call, first);
   if (none(rays.active)) return;
   const Found<REAL> found = intersect<kind>(*call.bucket->geometry, *call.quadric, rays);
   float* const tfar = &RTCRayN_tfar(call.ray, call.N, static_cast<unsigned>(first));
