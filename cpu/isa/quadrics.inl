@@ -1,7 +1,7 @@
 // Embree's callbacks for quadrics, compiled once per instruction set (see lanes.inl).
 
 #include "cpu/isa/quadric_lanes.inl"
-#include "cpu/quadric_bucket.h"
+#include "cpu/packet.h"
 
 namespace rayengine::ISA {
 namespace {
@@ -110,9 +110,8 @@ INLINE Rays<REAL> gather(const Call& call, int first) {
 template <class REAL>
 inline constexpr bool is_double = sizeof(typename kernels::Scalar<REAL>::type) == sizeof(double);
 
-/// What is written of a hit, beside the ids that all lanes share: Embree's t, and what it keeps for triangles alone.
-/// The packet's makers of hits read it (see packet.inl): `u` is the part, `v` holds the bits of the object's id.
-enum HitField { normal_field, u_field = 3, v_field, prim_field, geom_field, inst_field };
+// What is recorded of a hit beside its ids takes the places that Embree has for triangles: the normal; `u` is the part,
+// `v` holds the bits of the object's id. Makers of hits read them there (see packet.inl).
 
 INLINE void record(const Call& call, unsigned ray, double t, float part, const Vec3<float>& normal, bool exact) {
   QuadricContext& c = *call.context;
@@ -155,15 +154,17 @@ INLINE void record(const Call& call, int first, const Found<REAL>& found, const 
   } else {
     put(tfar, hit, found.t);
   }
-  const auto field = [&](int i) { return reinterpret_cast<float*>(call.hit) + i * static_cast<int>(call.N) + first; };
+  const auto field = [&](int row) {
+    return reinterpret_cast<float*>(call.hit) + (row - normal_x_row) * static_cast<int>(call.N) + first;
+  };
   const auto put_real = [&](int i, const REAL& value) {
     put(field(i), hit, __builtin_convertvector(value, Floats<REAL>));
   };
   const auto put_id = [&](int i, unsigned id) { put(field(i), hit, Ints<REAL>{} + static_cast<int>(id)); };
-  put_real(normal_field, normal.x), put_real(normal_field + 1, normal.y), put_real(normal_field + 2, normal.z);
-  put_real(u_field, found.part);
-  put_id(v_field, call.quadric->object);
-  put_id(prim_field, call.prim), put_id(geom_field, call.geom), put_id(inst_field, call.inst);
+  put_real(normal_x_row, normal.x), put_real(normal_x_row + 1, normal.y), put_real(normal_x_row + 2, normal.z);
+  put_real(u_row, found.part);
+  put_id(v_row, call.quadric->object);
+  put_id(prim_row, call.prim), put_id(geom_row, call.geom), put_id(inst_row, call.inst);
 }
 
 template <int kind, class REAL>
