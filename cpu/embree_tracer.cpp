@@ -60,8 +60,6 @@ class EmbreeTracer final : public Tracer {
   const PacketCode& code_ = packet_code(best_isa());
   bool instances_ = !scene_.instances().empty();
   bool ids_are_known_ = maker_.ids_are_known();
-  /// Tests of triangles are so cheap that shadow rays gain from packets even where they part.
-  bool mostly_triangles_ = geometry_->triangles.size() > geometry_->quadrics.size();
 };
 
 /// Primary and shadow rays are coherent as they come.
@@ -161,7 +159,7 @@ void EmbreeTracer::closest_packets(std::span<const Ray> rays, std::span<Hit> hit
 void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_t> status, RayClass ray_class) const {
   Packet packet;
   loader_.begin(true, packet);
-  const bool coherent = is_coherent(ray_class) || mostly_triangles_;
+  const bool coherent = is_coherent(ray_class);
   const auto lanes = static_cast<std::size_t>(packet.lanes);
   for (std::size_t first = 0; first < rays.size(); first += lanes) {
     const auto now = packet_at(rays, first, lanes);
@@ -174,8 +172,8 @@ void EmbreeTracer::any_packets(std::span<const Ray> rays, std::span<std::uint32_
     }
     const float* tfar = packet.row(tfar_row);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      const bool occluded = packet.valid[i] && tfar[i] == -std::numeric_limits<float>::infinity();
-      status[first + i] = packet.status[i] | (occluded ? status_hit : status_miss);
+      const bool occluded = (packet.valid[i] != 0) & (tfar[i] == -std::numeric_limits<float>::infinity());
+      status[first + i] = packet.status[i] | (occluded * status_hit);
     }
   }
 }

@@ -149,7 +149,7 @@ INLINE void normalise(const float* numbers, int lanes, float (*unit)[packet_size
 
 typedef int Words __attribute__((vector_size(16)));
 typedef float FourFloats __attribute__((vector_size(16)));
-typedef double Pair __attribute__((vector_size(16)));
+typedef long long FourBits __attribute__((vector_size(32)));
 
 /// Four rows of four words as columns, which go to 16 bytes each, `stride` bytes apart.
 INLINE void store_columns(Words a, Words b, Words c, Words d, char* to, std::size_t stride) {
@@ -193,8 +193,16 @@ INLINE void put_quadrics(const QuadricRows& quadrics, Words geometry, int first,
   h.object = is_quadric ? h.v : h.object;
   h.primitive = is_quadric ? __builtin_convertvector((FourFloats)h.u, Words) : h.primitive;
   h.u &= ~is_quadric, h.v &= ~is_quadric;
-  typedef long long Bits __attribute__((vector_size(32)));
-  if (quadrics.t) h.t = __builtin_convertvector(is_quadric, Bits) ? read<Four>(quadrics.t + first) : h.t;
+  if (quadrics.t) h.t = __builtin_convertvector(is_quadric, FourBits) ? read<Four>(quadrics.t + first) : h.t;
+}
+
+/// Distances, and errors of zero, `stride` bytes apart; selected in lanes, since who hits cannot be foretold.
+INLINE void store_distances(const FourHits& h, char* to, std::size_t stride) {
+  const Four t = __builtin_convertvector(h.hit, FourBits) ? h.t : splat<Four>(__builtin_inf()), error{};
+  write(to, __builtin_shufflevector(t, error, 0, 4));
+  write(to + stride, __builtin_shufflevector(t, error, 1, 4));
+  write(to + 2 * stride, __builtin_shufflevector(t, error, 2, 4));
+  write(to + 3 * stride, __builtin_shufflevector(t, error, 3, 4));
 }
 
 void store(const float* numbers, int lanes, std::uint32_t object, const QuadricRows* quadrics, Hit* hits) {
@@ -207,7 +215,7 @@ void store(const float* numbers, int lanes, std::uint32_t object, const QuadricR
                row(v_row),          __builtin_convertvector((FourFloats)row(tfar_row), Four)};
     if (quadrics) put_quadrics(*quadrics, row(geom_row), i, h);
     auto* const out = reinterpret_cast<char*>(hits + i);  // 16 bytes each: t, error; ids, barycentrics; normal, status
-    for (int k = 0; k < 4; ++k) write(out + k * sizeof(Hit), Pair{h.hit[k] ? h.t[k] : __builtin_inf(), 0});
+    store_distances(h, out, sizeof(Hit));
     store_columns(h.object | ~h.hit, h.primitive | ~h.hit, h.u & h.hit, h.v & h.hit, out + offsetof(Hit, object),
                   sizeof(Hit));
     store_columns(read<Words>(normal[0] + i), read<Words>(normal[1] + i), read<Words>(normal[2] + i),
