@@ -58,6 +58,10 @@ Solution solve_triangle(const PrimitiveRef& ref, const GroupRay& ray, double t_g
 /// The crossing with a quadric's side that `t_guess` is nearest to, or with the plane of its cap.
 Solution solve_quadric(const PrimitiveRef& ref, const GroupRay& ray, double t_guess);
 
+/// A quadric's solution with the bits of t that tracers in double find: those of balls and cylinders without caps come
+/// from kernels of their own.
+Solution with_traced_t(const PrimitiveRef& ref, const GroupRay& ray, Solution solution);
+
 /// A normal of the geometry that holds the primitive, taken to world space; not normalised.
 inline glm::dvec3 to_world(const Instance* instance, const glm::dvec3& normal) {
   return instance ? instance->to_group.normal_to_world(normal) : normal;

@@ -75,6 +75,21 @@ Solution solve_quadric(const PrimitiveRef& ref, const GroupRay& ray, double t_gu
   return solve_side(diagonal(q.type), ref, ray, t_guess);
 }
 
+Solution with_traced_t(const PrimitiveRef& ref, const GroupRay& ray, Solution solution) {
+  const Quadric& q = ref.quadric();
+  const bool ball = q.type == QuadricType::sphere;
+  if (ref.primitive != 0 || q.capped || !(ball || q.type == QuadricType::cylinder)) return solution;
+  const auto [o, d, unused, unused_too] = formulas::transformed(ray, map_of(q.to_object));
+  double dd, near, far;
+  const double under_root = kernels::round_discriminant(ball, o, d, dd);
+  kernels::round_roots(ball, o, d, dd, under_root, near, far);
+  const double t = std::abs(far - solution.t) < std::abs(near - solution.t) ? far : near;
+  if (!(t < std::numeric_limits<double>::max())) return solution;
+  solution.error = (solution.error + std::abs(t - solution.t)) * (1 + 4 * gamma(1));
+  solution.t = t;
+  return solution;
+}
+
 glm::dvec3 quadric_normal(const Geometry& geometry, const Quadric& quadric, const Instance* instance,
                           std::uint32_t part, const glm::dvec3& point) {
   const glm::dvec3 local = quadric.to_object.point(instance ? instance->to_group.point(point) : point);

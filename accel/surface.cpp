@@ -7,9 +7,13 @@ namespace {
 
 GroupRay world_ray(const Ray& ray) { return {kernel_vec(ray.origin), kernel_vec(ray.direction)}; }
 
+GroupRay group_ray(const PrimitiveRef& ref, const Ray& ray) {
+  const GroupRay world = world_ray(ray);
+  return ref.instance ? formulas::transformed(world, map_of(ref.instance->to_group)) : world;
+}
+
 Solution solve(const PrimitiveRef& ref, const Ray& ray, double t_guess) {
-  GroupRay local = world_ray(ray);
-  if (ref.instance) local = formulas::transformed(local, map_of(ref.instance->to_group));
+  const GroupRay local = group_ray(ref, ray);
   return ref.is_triangle() ? solve_triangle(ref, local, t_guess) : solve_quadric(ref, local, t_guess);
 }
 
@@ -43,7 +47,8 @@ Surface surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit) {
 
 Hit refine(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const PrimitiveRef ref = resolve(geometry, hit.object, hit.primitive);
-  const Solution s = solve(ref, ray, hit.t);
+  Solution s = solve(ref, ray, hit.t);
+  if (!ref.is_triangle()) s = with_traced_t(ref, group_ray(ref, ray), s);
   Hit result = hit;
   result.t = s.t;
   result.error = s.error;

@@ -52,6 +52,32 @@ KERNEL void roots(REAL a, REAL b, REAL c, OUT(REAL) near, OUT(REAL) far) {
   far = larger(r0, r1);
 }
 
+// A ball, or else an infinite cylinder about z, of radius 1 needs no approach: by Lagrange's identity a quarter of the
+// discriminant of dd t^2 + 2 od t + oo - 1 = 0 is dd - (o x d)^2, in which nothing cancels that grows with the distance.
+KERNEL REAL round_discriminant(bool ball, VEC3 o, VEC3 d, OUT(REAL) dd) {
+  REAL z = o.x * d.y - o.y * d.x, cross2 = z * z;
+  dd = d.x * d.x + d.y * d.y;
+  if (ball) {
+    REAL x = o.y * d.z - o.z * d.y, y = o.z * d.x - o.x * d.z;
+    cross2 = (x * x + y * y) + cross2;
+    dd = dd + d.z * d.z;
+  }
+  return dd - cross2;
+}
+
+// Where o + t d meets it, in order; REAL_MAX where it does not. What rounding left out of the chord's middle is added.
+KERNEL void round_roots(bool ball, VEC3 o, VEC3 d, REAL dd, REAL under_root, OUT(REAL) near, OUT(REAL) far) {
+  REAL per_dd = 1 / dd, od = o.x * d.x + o.y * d.y;
+  if (ball) od = od + o.z * d.z;
+  REAL middle = -od * per_dd;
+  REAL left = (o.x + middle * d.x) * d.x + (o.y + middle * d.y) * d.y;
+  if (ball) left = left + (o.z + middle * d.z) * d.z;
+  BOOL real = under_root > 0;
+  REAL rest = -left * per_dd, half_chord = root(pick(real, under_root, dd - dd)) * per_dd, none = REAL_MAX;
+  near = pick(real, middle + (rest - half_chord), none);
+  far = pick(real, middle + (rest + half_chord), none);
+}
+
 // The plane z = at along p + r d; REAL_MAX when the ray runs in parallel.
 KERNEL REAL plane_root(REAL at, VEC3 p, VEC3 d) {
   return pick(d.z != 0, (at - p.z) / d.z, REAL_MAX);

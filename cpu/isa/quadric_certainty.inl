@@ -154,9 +154,10 @@ INLINE void certain_crossings(const Geometry& geometry, const Quadric& q, double
     to_unit_ball(q.to_object, o, a.d);
   else
     to_object(q.to_object, o, a.d);
-  if (is_round(kind)) {  // whose caps lie within the same distance
-    const auto slack = [&](REAL, REAL) { return kernels::distance_error(o_size, a.d_size); };
-    active = kernels::both(!passes_by<type == QuadricType::cylinder>(o, a.d, slack), active);
+  if (is_round(type)) {  // whose caps lie within the same distance
+    REAL dd;
+    const REAL under_root = kernels::round_discriminant(type == QuadricType::sphere, o, a.d, dd);
+    active = kernels::both(!(under_root < -kernels::distance_error(o_size, a.d_size)), active);
     if (none(active)) return;
   }
   kernels::approach(o, a.d, a.p, a.shift);

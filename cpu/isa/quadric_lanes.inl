@@ -138,53 +138,63 @@ struct Crossings {
   REAL near, far, lower_cap, upper_cap;
 };
 
-/// Whether the line passes a ball, or an infinite cylinder about z, of radius 1: their distance is |o x d| / |d|. What
-/// the products round by is given away in `slack(o^2, d^2)`, so that no ray is lost that is to be tested.
-template <bool about_axis, class REAL, class Slack>
-INLINE kernels::Mask<REAL> passes_by(const Vec3<REAL>& o, const Vec3<REAL>& d, Slack&& slack) {
-  const REAL z = o.x * d.y - o.y * d.x;
-  REAL cross = z * z, dd = d.x * d.x + d.y * d.y, oo = o.x * o.x + o.y * o.y;
-  if constexpr (!about_axis) {
-    const REAL x = o.y * d.z - o.z * d.y, y = o.z * d.x - o.x * d.z;
-    cross = (x * x + y * y) + cross;
-    dd = dd + d.z * d.z, oo = oo + o.z * o.z;
-  }
-  return cross > dd + slack(oo, dd);
+constexpr bool is_round(QuadricType type) { return type == QuadricType::sphere || type == QuadricType::cylinder; }
+
+/// A ray along which roots are sought: t = shift + r at p + r d.
+template <class REAL>
+struct Line {
+  Vec3<REAL> p, d;
+  REAL shift;
+};
+
+/// Whether no active line comes as near as a round quadric's surface. Its caps lie within the same distance, so what
+/// the products round by is given away.
+template <bool ball, class REAL>
+INLINE bool all_pass_by(const Vec3<REAL>& o, REAL dd, REAL under_root, const kernels::Mask<REAL>& active) {
+  constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
+  const REAL across = o.x * o.x + o.y * o.y, oo = ball ? across + o.z * o.z : across;
+  return none(kernels::both(!(under_root < -(dd * ((16 * unit) + (16 * unit) * oo))), active));
 }
 
-constexpr bool is_round(int kind) {
-  const QuadricType type = type_of(kind);
-  return type == QuadricType::sphere || type == QuadricType::cylinder;
+/// Where a line meets the side of a quadric, clips apart; false when no active ray can meet the quadric at all. Most
+/// that meet its box pass it by: those are spared the divisions and the root.
+template <int kind, class REAL>
+INLINE bool meets_side(const Geometry& geometry, const Quadric& q, const kernels::Mask<REAL>& active, Line<REAL>& line,
+                       REAL& near, REAL& far) {
+  constexpr QuadricType type = type_of(kind);
+  const Vec3<REAL> o = line.p;
+  if constexpr (is_round(type)) {
+    constexpr bool ball = type == QuadricType::sphere;
+    REAL dd;
+    const REAL under_root = kernels::round_discriminant(ball, o, line.d, dd);
+    if (all_pass_by<ball>(o, dd, under_root, active)) return false;
+    if (kind == ball_kind || !q.capped) {
+      kernels::round_roots(ball, o, line.d, dd, under_root, near, far);
+      return true;
+    }
+  }
+  kernels::approach(o, line.d, line.p, line.shift);  // caps, too, are best found from there
+  const Quadratic<REAL> f = quadratic<type>(geometry, q, line.p, line.d);
+  if (none(kernels::both(kernels::discriminant(f.a, f.b, f.c) > 0, active)) && !q.capped) return false;
+  kernels::roots(f.a, f.b, f.c, near, far);
+  return true;
 }
 
 template <int kind, class REAL>
 INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, const Rays<REAL>& rays) {
   constexpr QuadricType type = type_of(kind);
-  Vec3<REAL> o = rays.o, d = rays.d;
+  Line<REAL> line{rays.o, rays.d, REAL{}};
+  auto& [p, d, shift] = line;
   if constexpr (kind == ball_kind)
-    to_unit_ball(q.to_object, o, d);
+    to_unit_ball(q.to_object, p, d);
   else
-    to_object(q.to_object, o, d);
+    to_object(q.to_object, p, d);
   const REAL largest = splat<REAL>(std::numeric_limits<typename kernels::Scalar<REAL>::type>::max());
-  // Most rays that meet a quadric's box pass it by: those are spared the divisions and the root.
-  // A cylinder's caps lie within the same distance of its axis as its side.
-  if constexpr (is_round(kind)) {
-    constexpr auto unit = std::numeric_limits<typename kernels::Scalar<REAL>::type>::epsilon();
-    const auto slack = [](REAL oo, REAL dd) { return dd * ((16 * unit) + (16 * unit) * oo); };
-    if (none(kernels::both(!passes_by<type == QuadricType::cylinder>(o, d, slack), rays.active)))
-      return {largest, largest, largest, largest};
-  }
-  Vec3<REAL> p;
-  REAL s, near, far;
-  kernels::approach(o, d, p, s);
-  const Quadratic<REAL> f = quadratic<type>(geometry, q, p, d);
-  if (none(kernels::both(kernels::discriminant(f.a, f.b, f.c) > 0, rays.active)) && (kind == ball_kind || !q.capped))
-    return {largest, largest, largest, largest};
-  kernels::roots(f.a, f.b, f.c, near, far);
-  Crossings<REAL> found{near, far, largest, largest};
+  Crossings<REAL> found{largest, largest, largest, largest};
+  if (!meets_side<kind>(geometry, q, rays.active, line, found.near, found.far)) return found;
   if (kind != ball_kind) {
-    found.near = clipped<type>(geometry, q, near, p, d);
-    found.far = clipped<type>(geometry, q, far, p, d);
+    found.near = clipped<type>(geometry, q, found.near, p, d);
+    found.far = clipped<type>(geometry, q, found.far, p, d);
   }
   if (kind != ball_kind && q.capped) {
     constexpr Form m = form<type>();
@@ -197,7 +207,7 @@ INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, con
     found.upper_cap = type == QuadricType::cone && q.zmax == 0 ? largest : cap(q.zmax);
   }
   // Adding the shift leaves the largest number what it is: no hit.
-  return {s + found.near, s + found.far, s + found.lower_cap, s + found.upper_cap};
+  return {shift + found.near, shift + found.far, shift + found.lower_cap, shift + found.upper_cap};
 }
 
 template <int kind, class REAL>

@@ -18,7 +18,7 @@ using reference::quad;
 
 template <class REAL>
 class KernelsOf : public testing::Test {
- protected:
+ public:
   static constexpr double u = std::numeric_limits<REAL>::epsilon() / 2;
   using Vec = kernels::Vec3<REAL>;
 
@@ -143,6 +143,16 @@ std::array<REAL, 2> roots(const QuadricMatrix& m, kernels::Vec3<REAL> o, kernels
   return {near == none ? none : s + near, far == none ? none : s + far};
 }
 
+/// The same of a ball or an infinite cylinder by the kernels of their own.
+template <class REAL>
+std::array<REAL, 2> round_roots(QuadricType type, kernels::Vec3<REAL> o, kernels::Vec3<REAL> d) {
+  const bool ball = type == QuadricType::sphere;
+  REAL dd, near, far;
+  const REAL under_root = kernels::round_discriminant(ball, o, d, dd);
+  kernels::round_roots(ball, o, d, dd, under_root, near, far);
+  return {near, far};
+}
+
 std::shared_ptr<const Geometry> unclipped(const QuadricMatrix& matrix) {
   GeometryBuilder builder;
   builder.add(QuadricShape{QuadricType::general, false, {}, matrix, {}});
@@ -182,40 +192,58 @@ Conditioning conditioning(const QuadricMatrix& m, const Ray& ray, double t) {
   return {std::abs(glm::dot(g, ray.direction)), entries * reach * reach};
 }
 
+/// Holds roots(origin, direction) along 3000 rays against the exact ones of a quadric.
+template <class REAL, class Roots>
+void expect_roots_within_the_bound(const QuadricMatrix& m, std::uint64_t seed, const Roots& roots) {
+  using Of = KernelsOf<REAL>;
+  const auto geometry = unclipped(m);
+  int roots_seen = 0, unsure = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    Random random(seed, i);
+    const glm::dvec3 origin = Of::in_cube(random, 4), direction = Of::in_cube(random, 1.5) - origin;
+    const Ray ray{origin, -infinity, Of::seen(glm::normalize(direction)), infinity};
+    const std::vector<quad> exact = exact_roots(ray, *geometry);
+    const auto found = roots(Of::vec(ray.origin), Of::vec(ray.direction));
+    const auto count =
+        static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [](REAL t) { return std::abs(t) < 1e30; }));
+    if (count != exact.size()) {
+      ++unsure;
+      continue;
+    }
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+      const double t = static_cast<double>(exact[k]);
+      const Conditioning at = conditioning(geometry->forms[0].matrix, ray, t);
+      // Off by e in the form, a root is off by e over its slope; a root far away carries the rounding of t itself.
+      const double form_error = 64 * Of::u * at.size * (1 + t * t / (1 + glm::dot(ray.origin, ray.origin)));
+      if (at.slope * at.slope < 16 * form_error * at.size) continue;
+      ++roots_seen;
+      ASSERT_NEAR(found[k], t, form_error / at.slope + 8 * Of::u * (std::abs(t) + 8)) << "ray " << i;
+    }
+  }
+  EXPECT_GT(roots_seen, 1000);
+  EXPECT_LE(unsure, 6);
+}
+
 TYPED_TEST(KernelsOf, QuadricRootsAreWithinTheBoundForEveryType) {
   for (std::size_t type = 0; type < matrices().size(); ++type) {
+    SCOPED_TRACE("type " + std::to_string(type));
     const QuadricMatrix& m = matrices()[type];
-    const auto geometry = unclipped(m);
-    int roots_seen = 0, unsure = 0;
-    for (std::uint64_t i = 0; i < 3000; ++i) {
-      Random random(3 + type, i);
-      const glm::dvec3 origin = this->in_cube(random, 4), direction = this->in_cube(random, 1.5) - origin;
-      const Ray ray{origin, -infinity, this->seen(glm::normalize(direction)), infinity};
-      const std::vector<quad> exact = exact_roots(ray, *geometry);
-      const auto found = roots<TypeParam>(geometry->forms[0].matrix, this->vec(ray.origin), this->vec(ray.direction));
-      const auto count = static_cast<std::size_t>(
-          std::count_if(found.begin(), found.end(), [](TypeParam t) { return std::abs(t) < 1e30; }));
-      if (count != exact.size()) {
-        ++unsure;
-        continue;
-      }
-      for (std::size_t k = 0; k < exact.size(); ++k) {
-        const double t = static_cast<double>(exact[k]);
-        const Conditioning at = conditioning(geometry->forms[0].matrix, ray, t);
-        // Off by e in the form, a root is off by e over its slope; a root far away carries the rounding of t itself.
-        const double form_error = 64 * this->u * at.size * (1 + t * t / (1 + glm::dot(ray.origin, ray.origin)));
-        if (at.slope * at.slope < 16 * form_error * at.size) continue;
-        ++roots_seen;
-        ASSERT_NEAR(found[k], t, form_error / at.slope + 8 * this->u * (std::abs(t) + 8))
-            << "type " << type << " ray " << i;
-      }
-    }
-    EXPECT_GT(roots_seen, 1000) << "type " << type;
-    EXPECT_LE(unsure, 6) << "type " << type;
+    expect_roots_within_the_bound<TypeParam>(m, 3 + type, [&](auto o, auto d) { return roots<TypeParam>(m, o, d); });
   }
 }
 
-TYPED_TEST(KernelsOf, FarSpheresAreDecidedAsWellAsTheMethodPromises) {
+TYPED_TEST(KernelsOf, RoundRootsAreWithinTheSameBound) {
+  for (const QuadricType type : {QuadricType::sphere, QuadricType::cylinder}) {
+    SCOPED_TRACE(to_string(type));
+    expect_roots_within_the_bound<TypeParam>(unit_matrix(type), 3,
+                                             [&](auto o, auto d) { return round_roots<TypeParam>(type, o, d); });
+  }
+}
+
+/// Holds roots(origin, direction) of the unit sphere against the exact ones, from ten to ten thousand radii away.
+template <class REAL, class Roots>
+void expect_far_spheres_decided(const Roots& roots) {
+  using Of = KernelsOf<REAL>;
   const auto geometry = unclipped(unit_matrix(QuadricType::sphere));
   for (const double distance : {1e1, 1e2, 1e3, 1e4}) {
     int wrong = 0, hits = 0;
@@ -223,23 +251,29 @@ TYPED_TEST(KernelsOf, FarSpheresAreDecidedAsWellAsTheMethodPromises) {
     const int count = 5000;
     for (int i = 0; i < count; ++i) {
       Random random(4, static_cast<std::uint64_t>(i));
-      const glm::dvec3 origin = this->seen(distance * random.direction());
+      const glm::dvec3 origin = Of::seen(distance * random.direction());
       const glm::dvec3 aside = glm::normalize(glm::cross(origin, random.direction()));
       const double radius = 1.2 * std::sqrt(random.unit());
-      const Ray ray{origin, 0, this->seen(glm::normalize(radius * aside - origin)), infinity};
+      const Ray ray{origin, 0, Of::seen(glm::normalize(radius * aside - origin)), infinity};
       const std::vector<quad> exact = exact_roots(ray, *geometry);
-      const auto found =
-          roots<TypeParam>(unit_matrix(QuadricType::sphere), this->vec(ray.origin), this->vec(ray.direction));
+      const auto found = roots(Of::vec(ray.origin), Of::vec(ray.direction));
       wrong += (found[0] < 1e30) == exact.empty();
       if (exact.empty() || radius > 0.5) continue;
       ++hits;
       worst = std::max(worst, std::abs(found[0] - static_cast<double>(exact[0])));
     }
     // The shortest distance from the centre is known to a few u times the distance.
-    EXPECT_LE(wrong, 16 * this->u * distance * count) << "distance " << distance;
-    EXPECT_LE(worst, 3 * this->u * distance) << "distance " << distance;
+    EXPECT_LE(wrong, 16 * Of::u * distance * count) << "distance " << distance;
+    EXPECT_LE(worst, 3 * Of::u * distance) << "distance " << distance;
     EXPECT_GT(hits, count / 10);
   }
+}
+
+TYPED_TEST(KernelsOf, FarSpheresAreDecidedAsWellAsTheMethodPromises) {
+  const QuadricMatrix sphere = unit_matrix(QuadricType::sphere);
+  expect_far_spheres_decided<TypeParam>([&](auto o, auto d) { return roots<TypeParam>(sphere, o, d); });
+  expect_far_spheres_decided<TypeParam>(
+      [](auto o, auto d) { return round_roots<TypeParam>(QuadricType::sphere, o, d); });
 }
 
 // ---- boxes
