@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "accel/norms.h"
 #include "accel/rounding.h"
 #include "accel/stopwatch.h"
 
@@ -15,22 +16,20 @@ namespace {
 /// astray by 10 2^-24 more. Boxes padded by this hold what the exact rays hit.
 constexpr double padding_per_extent = 0x1p-19;
 
-/// Infinite boxes become the largest that Embree takes.
-float clamped(float a) {
-  return std::clamp(a, -static_cast<float>(EmbreeScene::range), static_cast<float>(EmbreeScene::range));
-}
-
 void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& bucket = *static_cast<const QuadricBucket*>(args->geometryUserPtr);
   const Geometry& geometry = *bucket.geometry;
   Box box = bounds(geometry, geometry.quadrics[bucket.quadrics[args->primID]]);
   // Rays from afar start at the box of what is finite, and may have passed an unbounded quadric by then: see RayLoader.
   if (!box.finite()) box = {glm::dvec3(-infinity), glm::dvec3(infinity)};
-  const double pad = bucket.padding;
-  RTCBounds& out = *args->bounds_o;
-  out.lower_x = clamped(float_below(box.lower.x - pad)), out.upper_x = clamped(float_above(box.upper.x + pad));
-  out.lower_y = clamped(float_below(box.lower.y - pad)), out.upper_y = clamped(float_above(box.upper.y + pad));
-  out.lower_z = clamped(float_below(box.lower.z - pad)), out.upper_z = clamped(float_above(box.upper.z + pad));
+  const auto lower = [&](double a) { return float_below(std::max(a - bucket.padding, -bucket.reach)); };
+  const auto upper = [&](double a) { return float_above(std::min(a + bucket.padding, bucket.reach)); };
+  *args->bounds_o = {.lower_x = lower(box.lower.x),
+                     .lower_y = lower(box.lower.y),
+                     .lower_z = lower(box.lower.z),
+                     .upper_x = upper(box.upper.x),
+                     .upper_y = upper(box.upper.y),
+                     .upper_z = upper(box.upper.z)};
 }
 
 Box finite_part(const Geometry& geometry) {
@@ -44,12 +43,10 @@ Box finite_part(const Geometry& geometry) {
   return box;
 }
 
-/// The largest factor by which a map stretches a coordinate.
-double stretch(const glm::dmat3& m) {
-  double largest = 0;
-  for (int row = 0; row < 3; ++row)
-    largest = std::max(largest, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
-  return largest;
+/// How far a cube about the origin may reach so that Embree takes the box of what the map makes of it, too: it leaves
+/// out instances with larger ones.
+double reach_before(const Affine& map) {
+  return std::min(EmbreeScene::range, (EmbreeScene::range - largest_component(map.origin)) / norm_of(map.linear));
 }
 
 /// Embree's layout of an affine map: three columns, then the origin, in floats.
@@ -86,13 +83,9 @@ EmbreeScene::EmbreeScene(std::shared_ptr<const Geometry> geometry, Precision pre
   const double padding =
       precision_ == Precision::fast || finite_bounds_.empty() ? 0 : finite_bounds_.extent() * padding_per_extent;
   groups_.resize(geometry_->groups.size());
-  std::vector<double> group_padding(groups_.size());
-  for (const Instance& i : geometry_->instances) {
-    double& pad = group_padding[i.group];
-    pad = std::max(pad, stretch(i.to_group.linear) * padding);
-  }
-  for (std::size_t i = 0; i < groups_.size(); ++i) build(groups_[i], *geometry_->groups[i], group_padding[i]);
-  build(top_, *geometry_, padding);
+  const std::vector<Margins> margins = group_margins(padding);
+  for (std::size_t i = 0; i < groups_.size(); ++i) build(groups_[i], *geometry_->groups[i], margins[i]);
+  build(top_, *geometry_, {padding});
   build_seconds_ = watch.seconds();
 
   rtcSetDeviceMemoryMonitorFunction(device_, nullptr, nullptr);
@@ -119,7 +112,17 @@ std::size_t EmbreeScene::bytes() const {
   return total;
 }
 
-void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) {
+std::vector<EmbreeScene::Margins> EmbreeScene::group_margins(double padding) const {
+  std::vector<Margins> result(geometry_->groups.size(), Margins{0});
+  for (const Instance& i : geometry_->instances) {
+    Margins& m = result[i.group];
+    m.padding = std::max(m.padding, norm_of(i.to_group.linear) * padding);
+    m.reach = std::min(m.reach, reach_before(object_to_world(i.to_group)));
+  }
+  return result;
+}
+
+void EmbreeScene::build(Level& level, const Geometry& geometry, const Margins& margins) {
   level.geometry = &geometry;
   level.scene = rtcNewScene(device_);
   if (build_ == Build::quick) rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_LOW);
@@ -128,7 +131,7 @@ void EmbreeScene::build(Level& level, const Geometry& geometry, double padding) 
   rtcSetSceneFlags(level.scene, static_cast<RTCSceneFlags>(robust | filters));
   if (&level == &top_) attach_instances();
   attach_triangles(level);
-  attach_quadrics(level, padding);
+  attach_quadrics(level, margins);
   rtcCommitScene(level.scene);
 }
 
@@ -163,7 +166,7 @@ void EmbreeScene::attach_triangles(Level& level) {
   if (g.triangle_object.front() == g.triangle_object.back()) level.only_mesh = g.triangle_object.front();
 }
 
-void EmbreeScene::attach_quadrics(Level& level, double padding) {
+void EmbreeScene::attach_quadrics(Level& level, const Margins& margins) {
   const QuadricCallbacks& callbacks = quadric_callbacks(best_isa(), precision_);
   std::vector<std::vector<std::uint32_t>> by_kind(quadric_kind_count);
   for (std::size_t i = 0; i < level.geometry->quadrics.size(); ++i)
@@ -173,8 +176,8 @@ void EmbreeScene::attach_quadrics(Level& level, double padding) {
                            : level.triangles_id + 1;
   for (std::size_t kind = 0; kind < by_kind.size(); ++kind) {
     if (by_kind[kind].empty()) continue;
-    level.buckets.push_back(
-        std::make_unique<QuadricBucket>(QuadricBucket{level.geometry, std::move(by_kind[kind]), float_above(padding)}));
+    level.buckets.push_back(std::make_unique<QuadricBucket>(
+        QuadricBucket{level.geometry, std::move(by_kind[kind]), margins.padding, margins.reach}));
     QuadricBucket& bucket = *level.buckets.back();
     RTCGeometry user = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(user, static_cast<unsigned>(bucket.quadrics.size()));

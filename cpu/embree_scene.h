@@ -56,11 +56,17 @@ class EmbreeScene {
   }
 
  private:
-  void build(Level& level, const Geometry& geometry, double padding);
+  /// How the boxes of a level's quadrics differ from the quadrics' own.
+  struct Margins {
+    double padding;        ///< added to all sides, for what is rounded
+    double reach = range;  ///< where the sides of unbounded quadrics are
+  };
+  std::vector<Margins> group_margins(double padding) const;
+  void build(Level& level, const Geometry& geometry, const Margins& margins);
   unsigned attach(const Level& level, RTCGeometry geometry) const;
   void attach_instances();
   void attach_triangles(Level& level);
-  void attach_quadrics(Level& level, double padding);
+  void attach_quadrics(Level& level, const Margins& margins);
 
   std::shared_ptr<const Geometry> geometry_;
   Precision precision_;

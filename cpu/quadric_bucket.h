@@ -18,7 +18,8 @@ inline constexpr int packet_size = 16;
 struct QuadricBucket {
   const Geometry* geometry = nullptr;
   std::vector<std::uint32_t> quadrics;  ///< Embree's primID to the index in Geometry::quadrics
-  float padding = 0;                    ///< added to all sides of their boxes: see EmbreeScene
+  /// What EmbreeScene says of their boxes: all sides are moved out by the first, none further than the second.
+  double padding = 0, reach = 0;
 };
 
 /// Collects every hit of one ray; used by all-hits queries instead of the lanes' nearest.

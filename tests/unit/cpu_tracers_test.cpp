@@ -63,6 +63,23 @@ TEST_P(CpuTracer, KeepsDoublePrecisionFromFarAway) {
   EXPECT_FALSE(closest(*tracer, {{-1e7, 1 + 1e-9, 0}, 0, {1, 0, 0}, infinity}).hit());
 }
 
+/// Embree leaves out instances whose boxes reach further than it takes.
+TEST_P(CpuTracer, SeesPlanesThroughTurnedAndScaledInstances) {
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    GeometryBuilder group, builder;
+    group.add(QuadricShape{.type = QuadricType::plane});
+    const Affine map = Affine::rotate({1, 0, 0.5}, 20) * Affine::scale(glm::dvec3(scale));
+    builder.add(group.build(), map);
+    builder.add(QuadricShape{}, 0, Affine::translate({1e3, 0, 0}));
+    const auto tracer = tracer_of(builder);
+    const glm::dvec3 normal = map.linear * glm::dvec3(0, 0, 1) / scale;
+    for (const double aside : {0.0, 5.0, 1e4}) {
+      const Ray ray{{aside, 0, 3}, 0, {0, 0, -1}, infinity};
+      EXPECT_NEAR(closest(*tracer, ray).t, glm::dot(ray.origin, normal) / normal.z, 1e-11) << scale << ' ' << aside;
+    }
+  }
+}
+
 /// Its corners lie on a line but for the last bit of one: found by `rayengine stress`, where `bvh` answered t = 1.0032
 /// and a normal of NaN.
 TEST_P(CpuTracer, DoesNotHitATriangleInWhichDoublesSeeNoPlane) {
