@@ -158,22 +158,37 @@ void Waves::spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction
   ++rays_[refracted ? refracted_ray : reflected_ray];
 }
 
+/// The lit points that face a light, told apart before all else and without a branch, since they cannot be foretold.
+template <class Way>
+std::span<const std::uint32_t> Waves::turned_to(const Way& to_light) {
+  facing_.resize(std::max(facing_.size(), lit_));
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < lit_; ++i) {
+    facing_[count] = i;
+    count += glm::dot(points_[i].normal, to_light(points_[i])) > 0;
+  }
+  return {facing_.data(), count};
+}
+
 void Waves::shine(const Light& light, RayClass ray_class) {
   const bool is_point = light.type == Light::Type::point;
   // t counts in lengths of the direction: at 1 the ray has reached a point light.
   const double tmax = is_point ? 1 : infinity;
+  const auto to_light = [&](const LitPoint& p) {
+    return is_point ? light.position - p.departure.position : -light.direction;
+  };
   shadow_.size = 0;
   shadow_.reserve(lit_);
-  for (const LitPoint& p : std::span(points_.data(), lit_)) {
-    const glm::dvec3 to_light = is_point ? light.position - p.departure.position : -light.direction;
-    if (!(glm::dot(p.normal, to_light) > 0)) continue;
-    const glm::vec3 unit(to_light * (1 / std::sqrt(glm::dot(to_light, to_light))));
+  for (const std::uint32_t i : turned_to(to_light)) {
+    const LitPoint& p = points_[i];
+    const glm::dvec3 way = to_light(p);
+    const glm::vec3 unit(way * (1 / std::sqrt(glm::dot(way, way))));
     const Material& material = picture_.materials[p.material];
     const glm::vec3 share = p.path.weight * reflected_light(material, glm::vec3(p.normal), unit, p.view);
     const glm::vec3 seen = share * light.color;
     if (seen == glm::vec3(0)) continue;
     // Neither of a light as bright as white nor of this one: dim lights count against others that may be dim, too.
-    if (matters(share) || matters(seen)) shadow_.add(p.departure, to_light, tmax, seen, p.path.sample);
+    if (matters(share) || matters(seen)) shadow_.add(p.departure, way, tmax, seen, p.path.sample);
   }
   if (shadow_.size > 0) add_unshadowed(ray_class);
 }

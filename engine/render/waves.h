@@ -96,6 +96,8 @@ class Waves {
   void shade(const Ray& ray, const Surface& surface, const Path& path, LitPoint& point, Queue* next);
   void scatter(const Ray& ray, const Surface& surface, const LitPoint& point, Queue& next);
   void spawn(Queue& next, const LitPoint& from, const glm::dvec3& direction, const glm::vec3& weight, bool refracted);
+  template <class Way>
+  std::span<const std::uint32_t> turned_to(const Way& to_light);
   void shine(const Light& light, RayClass ray_class);
   void add_unshadowed(RayClass ray_class);
 
@@ -110,6 +112,7 @@ class Waves {
   std::vector<std::uint32_t> shadow_status_;
   std::vector<LitPoint> points_;  ///< the first lit_ of them count
   std::size_t lit_ = 0;
+  std::vector<std::uint32_t> facing_;  ///< those of them that face a light
   std::vector<glm::vec3> radiance_;
   std::array<std::uint64_t, 4> rays_{};
   std::uint64_t invalid_ = 0;
