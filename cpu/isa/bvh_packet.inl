@@ -15,7 +15,7 @@ struct PacketState {
 };
 
 INLINE kernels::Mask<Reals> lanes_with(unsigned bits) {
-  kernels::Mask<Reals> of_lane, all_bits;
+  kernels::Mask<Reals> of_lane{}, all_bits{};
   for (int i = 0; i < reals_count; ++i) of_lane[i] = 1ll << i, all_bits[i] = bits;
   return (all_bits & of_lane) != 0;
 }
