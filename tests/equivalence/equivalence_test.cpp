@@ -6,12 +6,12 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
-#include "cpu/reference_tracer.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/rays.h"
 #include "engine/tracers.h"
 #include "gpu/grid/grid_tracer.h"
 #include "tests/equivalence/cases.h"
+#include "tests/equivalence/oracle.h"
 
 namespace rayengine {
 namespace {
@@ -30,7 +30,7 @@ class Equivalence : public testing::TestWithParam<std::tuple<const char*, Case>>
     return make_tracer(name, scene().geometry, {.precision = precision});
   }
 
-  std::unique_ptr<Tracer> oracle() const { return make_reference_tracer(scene().geometry); }
+  Tracer& oracle() const { return test::oracle_on(scene().geometry); }
 
   void expect_equivalent(Precision precision, std::span<const Ray> rays, RayClass ray_class, std::uint64_t leaks = 0);
 
@@ -75,9 +75,9 @@ std::string describe(const Comparison& c, std::span<const Ray> rays, Tracer& tra
 
 void Equivalence::expect_equivalent(Precision precision, std::span<const Ray> rays, RayClass ray_class,
                                     std::uint64_t leaks) {
-  const auto tested = tracer(precision), exact = oracle();
-  const Comparison result = compare(*tested, *exact, geometry(), rays, ray_class);
-  EXPECT_LE(result.beyond_bounds, leaks) << describe(result, rays, *tested, *exact);
+  const auto tested = tracer(precision);
+  const Comparison result = compare(*tested, oracle(), geometry(), rays, ray_class);
+  EXPECT_LE(result.beyond_bounds, leaks) << describe(result, rays, *tested, oracle());
   EXPECT_EQ(result.nans, 0u);
   EXPECT_GT(result.hits, rays.size() / 20) << "too few hits to prove anything";
 }
@@ -106,12 +106,12 @@ TEST_P(Equivalence, RobustOnRaysFromAfar) {
 TEST_P(Equivalence, RobustOnRaysThatLeaveSurfaces) {
   const auto rays = random_rays(geometry().bounds, 1500, 3);
   std::vector<Hit> hits(rays.size());
-  oracle()->closest(rays, hits, RayClass::primary);
+  oracle().closest(rays, hits, RayClass::primary);
   const auto bounces = bounce_rays(geometry(), rays, hits);
   ASSERT_FALSE(bounces.empty());
-  const auto tested = tracer(Precision::robust), exact = oracle();
-  const Comparison result = compare(*tested, *exact, geometry(), bounces, RayClass::bounce);
-  EXPECT_EQ(result.beyond_bounds, 0u) << describe(result, bounces, *tested, *exact);
+  const auto tested = tracer(Precision::robust);
+  const Comparison result = compare(*tested, oracle(), geometry(), bounces, RayClass::bounce);
+  EXPECT_EQ(result.beyond_bounds, 0u) << describe(result, bounces, *tested, oracle());
 }
 
 /// A third of the way along each ray's first hit and beyond: any-hit queries must see the interval, too.
@@ -122,20 +122,20 @@ std::vector<Ray> cut_short(std::vector<Ray> rays, std::span<const Hit> hits) {
 }
 
 TEST_P(Equivalence, AnyAgreesWithClosest) {
-  const auto tested = tracer(Precision::robust), right = oracle();
+  const auto tested = tracer(Precision::robust);
   const auto whole = random_rays(geometry().bounds, 1500, 4);
   std::vector<Hit> exact(whole.size());
-  right->closest(whole, exact, RayClass::primary);
+  oracle().closest(whole, exact, RayClass::primary);
   const auto rays = cut_short(whole, exact);
   std::vector<std::uint32_t> ours(rays.size(), 99), theirs(rays.size(), 99);
-  right->any(rays, theirs, RayClass::shadow);
+  oracle().any(rays, theirs, RayClass::shadow);
   for (const RayClass ray_class : {RayClass::shadow, RayClass::bounce}) {
     tested->any(rays, ours, ray_class);
     std::size_t differences = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) differences += ours[i] != theirs[i];
     EXPECT_LE(differences, scene().differences);
   }
-  right->closest(rays, exact, RayClass::primary);
+  oracle().closest(rays, exact, RayClass::primary);
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(theirs[i], exact[i].status & status_hit);
 }
 
@@ -148,7 +148,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ids(const HitLists& lists, 
 
 TEST_P(Equivalence, AllGivesTheOraclesLists) {
   const auto rays = random_rays(geometry().bounds, 1500, 5);
-  const HitLists exact = oracle()->all(rays);
+  const HitLists exact = oracle().all(rays);
   const HitLists ours = tracer(Precision::robust)->all(rays);
   ASSERT_EQ(ours.offsets.size(), rays.size() + 1);
   EXPECT_GT(exact.hits.size(), rays.size() / 20);

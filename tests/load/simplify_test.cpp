@@ -35,10 +35,22 @@ std::vector<glm::dvec3> samples(const Mesh& mesh, std::size_t count) {
   return points;
 }
 
-/// By trying every triangle: slow, and beholden to nothing that is tested.
+/// How far a box around the triangle is at least: along the axis where that is most.
+double boxes_distance(const glm::dvec3& p, const Corners& t) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto [low, high] = std::minmax({t[0][i], t[1][i], t[2][i]});
+    most = std::max({most, low - p[i], p[i] - high});
+  }
+  return most;
+}
+
+/// By trying every triangle that may be nearer: slow, and beholden to nothing that is tested.
 double distance(const glm::dvec3& p, const Mesh& mesh) {
   double least = infinity;
-  for (const glm::uvec3& t : mesh.triangles) least = std::min(least, squared_distance(p, corners(mesh.positions, t)));
+  for (const glm::uvec3& t : mesh.triangles)
+    if (const Corners c = corners(mesh.positions, t); boxes_distance(p, c) <= std::sqrt(least))
+      least = std::min(least, squared_distance(p, c));
   return std::sqrt(least);
 }
 
