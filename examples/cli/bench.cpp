@@ -119,9 +119,8 @@ Json bench_plans(const Options& o) {
 
 /// What cannot be asked for together.
 void check(const Options& o) {
-  if (o.simulate && !o.scenes.empty())
-    throw CLI::ValidationError("--simulate", "takes no scenes: its devices are made");
-  if (!o.simulate && !o.csv.empty()) throw CLI::ValidationError("--csv", "is written by --simulate alone");
+  if (o.simulate && !o.scenes.empty()) refuse("--simulate", "takes no scenes: its devices are made");
+  if (!o.simulate && !o.csv.empty()) refuse("--csv", "is written by --simulate alone");
   if (!o.simulate && o.scenes.empty()) throw CLI::RequiredError("SCENE");
   for (const auto& file : {o.json, o.csv})
     if (!file.empty()) check_output(file);

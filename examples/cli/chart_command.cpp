@@ -72,7 +72,7 @@ void check_names(const std::vector<fs::path>& scenes) {
   std::set<std::string> names{"distance", "chart"};
   for (const fs::path& scene : scenes)
     if (!names.insert(name_of(scene)).second)
-      throw CLI::ValidationError("SCENE", "the name '" + name_of(scene) + "' is taken: rename the file");
+      refuse("SCENE", "the name '" + name_of(scene) + "' is taken: rename the file");
 }
 
 int run(const Options& o) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -13,6 +12,11 @@
 
 #include "engine/scene/scene.h"
 #include "engine/tracers.h"
+
+namespace CLI {  // whose headers take seconds to compile: for those who declare options
+class App;
+class Option;
+}  // namespace CLI
 
 namespace rayengine::cli {
 
@@ -57,7 +61,10 @@ CLI::Option* add_size(CLI::App* app, std::optional<glm::ivec2>& size, const std:
 /// Comma-separated names, as in `--tracers embree,reference`.
 std::vector<std::string> split(const std::string& list);
 
-// Both throw CLI::ValidationError, naming the choices.
+/// Wrong usage: throws CLI::ValidationError.
+[[noreturn]] void refuse(const std::string& argument, const std::string& why);
+
+// Both refuse what they do not know, naming the choices.
 void check_tracer(const std::string& option, const std::string& name);
 Precision to_precision(const std::string& name);
 

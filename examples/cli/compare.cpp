@@ -44,7 +44,7 @@ std::size_t oracle_index(const std::vector<std::string>& names) {
 
 std::vector<std::string> names(const Options& o) {
   const std::vector<std::string> names = split(o.tracers);
-  if (names.size() < 2) throw CLI::ValidationError("--tracers", "needs two names or more, as in embree,reference");
+  if (names.size() < 2) refuse("--tracers", "needs two names or more, as in embree,reference");
   for (const std::string& name : names) check_tracer("--tracers", name);
   return names;
 }

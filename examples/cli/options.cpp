@@ -46,8 +46,7 @@ glm::ivec2 to_size(const std::string& text) {
   const std::optional<int> height =
       cross == text.npos ? std::nullopt : to_side(std::string_view(text).substr(cross + 1));
   if (width && height) return {*width, *height};
-  throw CLI::ValidationError("--size",
-                             fmt::format("'{}' is not WIDTHxHEIGHT with sides of 1 to {} pixels", text, largest_side));
+  refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT with sides of 1 to {} pixels", text, largest_side));
 }
 
 }  // namespace
@@ -86,14 +85,15 @@ CLI::Option* add_tracer(CLI::App* app, std::string& name) {
       ->check(CLI::Validator([](const std::string& text) { return wrong_tracer(text); }, ""));
 }
 
+void refuse(const std::string& argument, const std::string& why) { throw CLI::ValidationError(argument, why); }
+
 void check_tracer(const std::string& option, const std::string& name) {
-  if (const std::string wrong = wrong_tracer(name); !wrong.empty()) throw CLI::ValidationError(option, wrong);
+  if (const std::string wrong = wrong_tracer(name); !wrong.empty()) refuse(option, wrong);
 }
 
 Precision to_precision(const std::string& name) {
   if (const std::optional<Precision> precision = parse_precision(name)) return *precision;
-  throw CLI::ValidationError("--precision",
-                             "there is no precision '" + name + "'; choose among half, fast, robust, certified");
+  refuse("--precision", "there is no precision '" + name + "'; choose among half, fast, robust, certified");
 }
 
 CLI::Option* add_precision(CLI::App* app, std::optional<Precision>& precision) {

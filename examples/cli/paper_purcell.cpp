@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <iostream>
@@ -131,7 +130,7 @@ std::string page(const PurcellFigures& figures, const glm::ivec2& size, bool cha
 }  // namespace
 
 int run_purcell(const PaperOptions& o) {
-  if (o.scenes.size() > 1) throw CLI::ValidationError("SCENE", "paper purcell measures one scene: name no more");
+  if (o.scenes.size() > 1) refuse("SCENE", "paper purcell measures one scene: name no more");
   prepare_folder(o, {"purcell.csv", "purcell-policies.csv", "purcell.md"});
   const PurcellFigures figures = measure(o);
   write_text(o.output / "purcell.csv", csv(figures.rows));

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <numbers>
@@ -122,8 +121,8 @@ std::string page(const SzecsiResult& result, const std::string& processor, bool 
 }  // namespace
 
 int run_szecsi(const PaperOptions& o) {
-  if (!o.scenes.empty()) throw CLI::ValidationError("SCENE", "paper szecsi makes its own scenes: name none");
-  if (o.size) throw CLI::ValidationError("--size", "paper szecsi has its own sizes, 256x256 and 512x512: give none");
+  if (!o.scenes.empty()) refuse("SCENE", "paper szecsi makes its own scenes: name none");
+  if (o.size) refuse("--size", "paper szecsi has its own sizes, 256x256 and 512x512: give none");
   prepare_folder(o, {"szecsi.csv", "szecsi.md", "szecsi-cones.png"});
   const ThreadLimit limit(o.common.threads);
   Progress progress("paper szecsi", !o.common.quiet());

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 
@@ -84,7 +83,7 @@ void write_pictures(const std::filesystem::path& folder, const WoodFigures& figu
 }  // namespace
 
 int run_wood(const PaperOptions& o) {
-  if (!o.scenes.empty()) throw CLI::ValidationError("SCENE", "paper wood makes its own scenes: name none");
+  if (!o.scenes.empty()) refuse("SCENE", "paper wood makes its own scenes: name none");
   const glm::ivec2 size = o.size.value_or(WoodOptions{}.size);
   check_size(size, 4);
   prepare_folder(o, {"wood.csv", "wood.md", "wood-gpu.png"});

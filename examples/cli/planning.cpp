@@ -118,8 +118,7 @@ void add_tolerance(CLI::App* app, PlanningOptions& options) {
   app->add_option_function<double>(
          "--tolerance",
          [&](double value) {
-           if (!(value >= 0 && value < infinity))
-             throw CLI::ValidationError("--tolerance", "must be 0, which is exact, or more");
+           if (!(value >= 0 && value < infinity)) refuse("--tolerance", "must be 0, which is exact, or more");
            options.tolerance = value;
          },
          "Do the least work that keeps within so many " + unit + "; 0 is exact (see 'rayengine plan')")

@@ -43,14 +43,14 @@ struct Options {
 Aov to_aov(const std::string& name) {
   for (const auto& [known, aov] : aov_names)
     if (name == known) return aov;
-  throw CLI::ValidationError(
-      "--aov", "there is no output '" + name + "'; choose among depth,normal,object,primitive,position,error,status");
+  refuse("--aov",
+         "there is no output '" + name + "'; choose among depth,normal,object,primitive,position,error,status");
 }
 
 Shading to_shading(const std::string& name) {
   if (name == "full") return Shading::full;
   if (name == "direct") return Shading::direct;
-  throw CLI::ValidationError("--shading", "there is no shading '" + name + "'; choose full or direct");
+  refuse("--shading", "there is no shading '" + name + "'; choose full or direct");
 }
 
 /// The sample scene lies beside the program: in the source tree that it was built in, or in the installed share folder.
@@ -74,18 +74,15 @@ void check(Options& o) {
   if (o.scene.empty()) o.scene = sample_scene();
   if (o.output.empty()) o.output = o.scene.stem().string() + ".png";
   if (!o.render.aovs.empty() && o.output.extension() != ".exr")
-    throw CLI::ValidationError(
-        "--aov", "needs a format with named channels: write to a .exr file, not to '" + o.output.string() + "'");
+    refuse("--aov", "needs a format with named channels: write to a .exr file, not to '" + o.output.string() + "'");
   check_output(o.output);
   if (!o.stats.empty()) check_output(o.stats);
   if (o.size) check_size(*o.size, 4);
   if (!o.path.empty() && o.frames == 1)
-    throw CLI::ValidationError("--path",
-                               "says where the camera goes from picture to picture: give --frames, 2 or more");
-  if (o.planning.tolerance && o.frames > 1)
-    throw CLI::ValidationError("--tolerance", "a plan is for one camera: render frames without");
+    refuse("--path", "says where the camera goes from picture to picture: give --frames, 2 or more");
+  if (o.planning.tolerance && o.frames > 1) refuse("--tolerance", "a plan is for one camera: render frames without");
   if (o.render.caustics > 0 && o.render.shading == Shading::direct)
-    throw CLI::ValidationError("--caustics", "--shading direct knows no glass and no mirrors: choose full");
+    refuse("--caustics", "--shading direct knows no glass and no mirrors: choose full");
 }
 
 struct Seconds {
