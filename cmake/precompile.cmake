@@ -8,6 +8,7 @@ function(precompile target)
     set(headers algorithm array cmath functional glm/geometric.hpp glm/matrix.hpp memory optional span string vector ${ARGN})
     list(TRANSFORM headers REPLACE "(.+)" "<\\1>")
     target_precompile_headers(${target} PRIVATE ${headers})
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overread -Wno-stringop-overflow>)
+    target_compile_options(${target} PRIVATE
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overread -Wno-stringop-overflow>)
   endif()
 endfunction()
