@@ -184,7 +184,7 @@ template <int kind, class REAL>
 INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, const Rays<REAL>& rays) {
   constexpr QuadricType type = type_of(kind);
   Line<REAL> line{rays.o, rays.d, REAL{}};
-  auto& [p, d, shift] = line;
+  auto &p = line.p, &d = line.d;  // clang 14 captures no structured bindings
   if constexpr (kind == ball_kind)
     to_unit_ball(q.to_object, p, d);
   else
@@ -207,7 +207,7 @@ INLINE Crossings<REAL> crossings(const Geometry& geometry, const Quadric& q, con
     found.upper_cap = type == QuadricType::cone && q.zmax == 0 ? largest : cap(q.zmax);
   }
   // Adding the shift leaves the largest number what it is: no hit.
-  return {shift + found.near, shift + found.far, shift + found.lower_cap, shift + found.upper_cap};
+  return {line.shift + found.near, line.shift + found.far, line.shift + found.lower_cap, line.shift + found.upper_cap};
 }
 
 template <int kind, class REAL>
