@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "accel/ray.h"
+#include "accel/transform.h"
 
 namespace rayengine {
 
@@ -33,5 +34,21 @@ struct Box {
     return std::max({e.x, e.y, e.z});
   }
 };
+
+/// For what may be infinite: an axis that does not matter adds nothing.
+inline double product_or_zero(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+/// The box of a box that is taken through the map.
+inline Box transformed(const Box& box, const Affine& map) {
+  Box result{map.origin, map.origin};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      const double a = product_or_zero(map.linear[column][row], box.lower[column]);
+      const double b = product_or_zero(map.linear[column][row], box.upper[column]);
+      result.lower[row] += std::min(a, b);
+      result.upper[row] += std::max(a, b);
+    }
+  return result;
+}
 
 }  // namespace rayengine

@@ -25,7 +25,7 @@ struct Releaser {
 template <class Handle, auto Release>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Releaser<std::remove_pointer_t<Handle>, Release>>;
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
-using Builder = Owned<RTCBVH, rtcReleaseBVH>;
+using EmbreeBuilder = Owned<RTCBVH, rtcReleaseBVH>;
 
 /// What Embree's callbacks make, in memory that Embree holds until its builder is released.
 struct BuiltNode {
@@ -141,7 +141,7 @@ BinaryBvh build_bvh(std::span<const Box> boxes, std::uint32_t leaf_size, const B
 
   const Device device(rtcNewDevice(nullptr));
   if (!device) throw Error("Embree gave no device: check that its library is installed and runs on this machine");
-  const Builder builder(rtcNewBVH(device.get()));
+  const EmbreeBuilder builder(rtcNewBVH(device.get()));
   const RTCBuildArguments a = arguments(builder.get(), primitives, leaf_size);
   const auto* root = static_cast<const BuiltNode*>(rtcBuildBVH(&a));
   if (!root)

@@ -33,14 +33,6 @@ const Instance& placement(const Geometry& geometry, std::uint32_t object, std::u
   return primitive < end ? found : *first;
 }
 
-Box transformed(const Box& box, const Affine& map) {
-  Box result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.add(map.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                          corner & 4 ? box.upper.z : box.lower.z}));
-  return result;
-}
-
 }  // namespace
 
 std::size_t Geometry::bytes() const {

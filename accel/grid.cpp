@@ -33,9 +33,9 @@ double cube_side(const glm::dvec3& size, const glm::bvec3& thin, double voxels) 
   return axes == 0 ? 0 : std::pow(volume / voxels, 1. / axes);
 }
 
-class Builder {
+class GridBuilder {
  public:
-  Builder(const Geometry& geometry, const GridOptions& options)
+  GridBuilder(const Geometry& geometry, const GridOptions& options)
       : geometry_(geometry), options_(options), primitives_(treelet_primitives(geometry)) {
     grid_.lists.frame = LocalFrame(frame_bounds(geometry));
     lay_out();
@@ -179,6 +179,6 @@ glm::uvec3 grid_counts(const glm::dvec3& size, std::size_t primitives, const Gri
   return counts;
 }
 
-Grid build_grid(const Geometry& geometry, const GridOptions& options) { return Builder(geometry, options).build(); }
+Grid build_grid(const Geometry& geometry, const GridOptions& options) { return GridBuilder(geometry, options).build(); }
 
 }  // namespace rayengine

@@ -36,9 +36,6 @@ Discs discs(const Quadric& q) {
   return {q.zmin, convex ? r0 : widest, q.zmax, convex ? r1 : widest};
 }
 
-/// Infinity times zero is taken as zero here: an axis that does not matter adds nothing.
-double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
-
 /// As std::hypot, which takes five times as long, but for a rounding more; its care is for what over- or underflows.
 double length(double a, double b) {
   const double square = a * a + b * b;
@@ -51,7 +48,7 @@ Box bounds_of(const Discs& d, const Affine& map) {
   for (int i = 0; i < 3; ++i) {
     const double across = length(m[0][i], m[1][i]);
     const auto add_disc = [&](double z, double r) {
-      const double center = map.origin[i] + product(m[2][i], z), reach = product(across, r);
+      const double center = map.origin[i] + product_or_zero(m[2][i], z), reach = product_or_zero(across, r);
       box.lower[i] = std::min(box.lower[i], center - reach);
       box.upper[i] = std::max(box.upper[i], center + reach);
     };
@@ -59,18 +56,6 @@ Box bounds_of(const Discs& d, const Affine& map) {
     add_disc(d.z1, d.r1);
   }
   return box;
-}
-
-Box transformed(const Box& object_box, const Affine& map) {
-  Box result{map.origin, map.origin};
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) {
-      const double a = product(map.linear[column][row], object_box.lower[column]);
-      const double b = product(map.linear[column][row], object_box.upper[column]);
-      result.lower[row] += std::min(a, b);
-      result.upper[row] += std::max(a, b);
-    }
-  return result;
 }
 
 Box sphere_bounds(const Quadric& q, const Affine& map) {

@@ -13,19 +13,19 @@ namespace rayengine::test {
 
 using Wide = __float128;
 
-struct Point {
+struct WidePoint {
   Wide x, y, z;
-  Point(Wide x, Wide y, Wide z) : x(x), y(y), z(z) {}
-  explicit Point(const glm::vec3& v) : x(v.x), y(v.y), z(v.z) {}
-  Point operator+(const Point& b) const { return {x + b.x, y + b.y, z + b.z}; }
-  Point operator-(const Point& b) const { return {x - b.x, y - b.y, z - b.z}; }
+  WidePoint(Wide x, Wide y, Wide z) : x(x), y(y), z(z) {}
+  explicit WidePoint(const glm::vec3& v) : x(v.x), y(v.y), z(v.z) {}
+  WidePoint operator+(const WidePoint& b) const { return {x + b.x, y + b.y, z + b.z}; }
+  WidePoint operator-(const WidePoint& b) const { return {x - b.x, y - b.y, z - b.z}; }
 };
-inline Wide dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Wide dot(const WidePoint& a, const WidePoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Whether the cone holds a point: |across| cos <= along sin, both sides squared.
-inline bool holds(const RayCone& cone, const Point& p) {
+inline bool holds(const RayCone& cone, const WidePoint& p) {
   if (cone.cosine < 0) return true;
-  const Point axis(cone.axis), w = p - Point(cone.apex);
+  const WidePoint axis(cone.axis), w = p - WidePoint(cone.apex);
   const Wide along = dot(w, axis), axis_square = dot(axis, axis);
   const Wide across = dot(w, w) * axis_square - along * along;
   return along >= 0 && across * cone.cosine * cone.cosine <= along * along * cone.sine * cone.sine;
@@ -33,7 +33,7 @@ inline bool holds(const RayCone& cone, const Point& p) {
 
 /// Whether the cone holds the ray from its origin on: two points tell, the cone being convex, one of them at infinity.
 inline bool holds(const RayCone& cone, const ConeRay& ray) {
-  return holds(cone, Point(ray.origin)) && holds(cone, Point(cone.apex) + Point(ray.direction));
+  return holds(cone, WidePoint(ray.origin)) && holds(cone, WidePoint(cone.apex) + WidePoint(ray.direction));
 }
 
 using Tile = std::vector<ConeRay>;

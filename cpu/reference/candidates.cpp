@@ -11,8 +11,6 @@
 namespace rayengine::reference {
 namespace {
 
-int sign(quad x) { return x < 0 ? -1 : x > 0; }
-
 Root exact_t(const Ray& ray, const Candidate& c) {
   const auto world = make_line<Exact>(ray);
   const auto line = c.instance ? transformed(world, c.instance->to_group) : world;

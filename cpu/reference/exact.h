@@ -10,6 +10,8 @@ namespace rayengine::reference {
 
 using quad = __float128;
 
+inline int sign(quad x) { return x < 0 ? -1 : x > 0; }
+
 /// A number without rounding: a sum of quads that do not overlap, smallest first, zeros left out; empty is zero.
 /// Sums and products are exact as long as quads do not underflow, which doubles cannot make them do.
 /// Source of the method: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"

@@ -73,8 +73,6 @@ const T& component(const Vector<T>& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-int sign(quad x) { return x < 0 ? -1 : x > 0; }
-
 /// The sign of one coordinate of a root's point less `limit`, which is finite.
 int exact_side(const LocalRay& ray, const QuadricMatrix& q, bool rising, int axis, double limit) {
   const Line<Exact> line = ray.exact();

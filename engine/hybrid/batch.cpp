@@ -5,7 +5,7 @@
 namespace rayengine {
 namespace {
 
-void copy(const Answers& from, const Answers& to) {
+void copy(const AnswerSpans& from, const AnswerSpans& to) {
   std::ranges::copy(from.hits, to.hits.begin());
   std::ranges::copy(from.status, to.status.begin());
 }
@@ -46,7 +46,7 @@ void Batch::each_piece(std::size_t first, std::size_t last, const Use& use) {
   }
 }
 
-std::size_t Batch::deliver(std::size_t first, std::size_t last, const Answers& answers) {
+std::size_t Batch::deliver(std::size_t first, std::size_t last, const AnswerSpans& answers) {
   std::size_t delivered = 0;
   const std::size_t begin = rays_before(first);
   for (std::size_t b = first; b < last; ++b) {
@@ -58,7 +58,7 @@ std::size_t Batch::deliver(std::size_t first, std::size_t last, const Answers& a
   return delivered;
 }
 
-void Batch::write(std::size_t first, std::size_t last, const Answers& answers) {
+void Batch::write(std::size_t first, std::size_t last, const AnswerSpans& answers) {
   each_piece(first, last, [&](Job& job, std::size_t ray, std::size_t i, std::size_t count) {
     copy(answers.part(i - first, count), job.answers.part(ray, count));
     job.answered.fetch_add(count, std::memory_order_release);  // from here on its memory may be gone

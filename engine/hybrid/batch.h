@@ -25,14 +25,14 @@ class Batch {
   WorkKind kind() const { return kind_; }
   std::size_t size() const { return size_; }
   std::span<const Ray> rays() const { return rays_; }
-  Answers room() { return {hits_, status_}; }
+  AnswerSpans room() { return {hits_, status_}; }
 
   std::size_t blocks() const { return (size_ + block - 1) / block; }
   std::size_t rays_before(std::size_t blocks) const { return std::min(blocks * block, size_); }
 
   /// Writes the answers of these blocks to their jobs, but for blocks that are answered; `answers` begin with the first
   /// of them. Returns the number of rays answered thereby.
-  std::size_t deliver(std::size_t first, std::size_t last, const Answers& answers);
+  std::size_t deliver(std::size_t first, std::size_t last, const AnswerSpans& answers);
   /// Fails their jobs instead, but for blocks that are answered.
   void fail(std::size_t first, std::size_t last, const std::exception_ptr& error);
 
@@ -46,7 +46,7 @@ class Batch {
   bool claim(std::size_t block);
   template <class Use>
   void each_piece(std::size_t first, std::size_t last, const Use& use);
-  void write(std::size_t first, std::size_t last, const Answers& answers);
+  void write(std::size_t first, std::size_t last, const AnswerSpans& answers);
 
   WorkKind kind_;
   std::size_t size_ = 0;

@@ -47,9 +47,9 @@ class HybridTracer : public Hybrid {
   void lose_gpu() override;
 
  private:
-  void answer(WorkKind kind, std::span<const Ray> rays, const Answers& answers);
-  void answer_alone(WorkKind kind, std::span<const Ray> rays, const Answers& answers);
-  void answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays, const Answers& answers);
+  void answer(WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers);
+  void answer_alone(WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers);
+  void answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers);
   bool crew(RayPool& pool, const Job& job);
   void work(RayPool& pool, const CrewWork& work);
   std::size_t trace_own(const CrewWork& work);
@@ -108,7 +108,7 @@ HybridTracer::~HybridTracer() {
   if (RayPool* pool = pool_) pool->close();
 }
 
-void HybridTracer::answer(WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
+void HybridTracer::answer(WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers) {
   RayPool* pool = pool_.load(std::memory_order_acquire);
   if (pool && pool->gpu_in_use())
     answer_together(*pool, kind, rays, answers);
@@ -116,7 +116,7 @@ void HybridTracer::answer(WorkKind kind, std::span<const Ray> rays, const Answer
     answer_alone(kind, rays, answers);
 }
 
-void HybridTracer::answer_alone(WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
+void HybridTracer::answer_alone(WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers) {
   const Stopwatch watch;
   const bool small = rays.size() <= one_thread_rays;
   if (small)
@@ -132,7 +132,8 @@ void HybridTracer::answer_alone(WorkKind kind, std::span<const Ray> rays, const 
   if (spent > options_.patience * static_cast<double>(threads_) && !started_.exchange(true)) start_feeders();
 }
 
-void HybridTracer::answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
+void HybridTracer::answer_together(RayPool& pool, WorkKind kind, std::span<const Ray> rays,
+                                   const AnswerSpans& answers) {
   const auto job = std::make_shared<Job>(kind, rays, answers);
   pool.enter(job);
   while (!job->done())
@@ -187,7 +188,7 @@ std::size_t HybridTracer::trace_gpus(const CrewWork& work) {
   thread_local std::vector<Hit> hits;
   thread_local std::vector<std::uint32_t> status;
   work.kind.any ? status.resize(work.rays) : hits.resize(work.rays);
-  Answers room;
+  AnswerSpans room;
   work.kind.any ? void(room.status = std::span(status).first(work.rays))
                 : void(room.hits = std::span(hits).first(work.rays));
   trace(*cpu_, work.kind, work.batch->rays().subspan(work.batch->rays_before(work.first), work.rays), room);

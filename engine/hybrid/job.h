@@ -19,17 +19,17 @@ struct WorkKind {
 };
 
 /// Room for answers: hits, or status when only that is asked.
-struct Answers {
+struct AnswerSpans {
   std::span<Hit> hits;
   std::span<std::uint32_t> status;
 
-  Answers part(std::size_t first, std::size_t count) const {
+  AnswerSpans part(std::size_t first, std::size_t count) const {
     return {hits.empty() ? hits : hits.subspan(first, count), status.empty() ? status : status.subspan(first, count)};
   }
 };
 
 /// Has a tracer answer them.
-inline void trace(Tracer& tracer, WorkKind kind, std::span<const Ray> rays, const Answers& answers) {
+inline void trace(Tracer& tracer, WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers) {
   if (kind.any)
     tracer.any(rays, answers.status, kind.ray_class);
   else
@@ -39,12 +39,12 @@ inline void trace(Tracer& tracer, WorkKind kind, std::span<const Ray> rays, cons
 /// One caller's query, as it lies in the pool. The caller waits until all is answered; until then, and no longer, its
 /// memory may be touched.
 struct Job {
-  Job(WorkKind kind, std::span<const Ray> rays, const Answers& answers)
+  Job(WorkKind kind, std::span<const Ray> rays, const AnswerSpans& answers)
       : kind(kind), rays(rays), answers(answers), back(rays.size()) {}
 
   const WorkKind kind;
   const std::span<const Ray> rays;
-  const Answers answers;
+  const AnswerSpans answers;
   std::size_t front = 0, back;            ///< rays between them are nobody's; the processor takes from the front
   std::atomic<std::size_t> answered = 0;  ///< or failed
 

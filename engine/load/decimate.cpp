@@ -19,7 +19,7 @@ constexpr double stage_share = 0.2;         // of the limit: OpenMesh looks at v
 constexpr double least_progress = 0.1;      // of a stage: triangles dropped
 constexpr std::uint32_t most_absorbed = 8;  // vertices by another, in one stage
 
-using Triangles = std::vector<glm::uvec3>;
+using TriangleList = std::vector<glm::uvec3>;
 
 struct Traits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -89,8 +89,8 @@ class Collapsible {
     if (decimater.initialize()) decimater.decimate();
   }
 
-  Triangles triangles() const {
-    Triangles list = refused_;
+  TriangleList triangles() const {
+    TriangleList list = refused_;
     for (const auto face : mesh_.faces()) {
       glm::uvec3 t;
       int k = 0;
@@ -111,7 +111,7 @@ class Collapsible {
   }
 
   HalfEdgeMesh mesh_;
-  Triangles refused_;
+  TriangleList refused_;
   std::vector<OpenMesh::VertexHandle> vertex_;  // by ours
   std::vector<std::uint32_t> origin_;           // by OpenMesh's
 };
@@ -128,12 +128,12 @@ void widen(std::vector<char>& kept, std::span<const glm::uvec3> triangles) {
     if (before[t.x] || before[t.y] || before[t.z]) kept[t.x] = kept[t.y] = kept[t.z] = true;
 }
 
-Triangles collapsed(std::span<const glm::dvec3> positions, Triangles triangles, double limit,
-                    const std::vector<char>& kept) {
+TriangleList collapsed(std::span<const glm::dvec3> positions, TriangleList triangles, double limit,
+                       const std::vector<char>& kept) {
   for (int stage = 0; stage < most_stages; ++stage) {
     Collapsible mesh(positions, triangles, kept);
     mesh.collapse(stage_share * limit);
-    Triangles fewer = mesh.triangles();
+    TriangleList fewer = mesh.triangles();
     const bool goes_on = double(fewer.size()) < (1 - least_progress) * double(triangles.size());
     triangles = std::move(fewer);
     if (!goes_on) break;
@@ -145,13 +145,13 @@ Triangles collapsed(std::span<const glm::dvec3> positions, Triangles triangles, 
 
 Coarser decimate(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles, double limit) {
   std::vector<char> kept(positions.size());
-  const Triangles all(triangles.begin(), triangles.end());
-  const Surface original(positions, all);
+  const TriangleList all(triangles.begin(), triangles.end());
+  const MeshSurface original(positions, all);
   for (int tries = 0; tries < most_tries; ++tries) {
-    Triangles coarse = collapsed(positions, all, std::ldexp(limit, -tries), kept);
+    TriangleList coarse = collapsed(positions, all, std::ldexp(limit, -tries), kept);
     if (coarse.size() == triangles.size()) break;
     const Excursion out = excursion(positions, coarse, original, limit);
-    const Excursion in = excursion(positions, triangles, Surface(positions, coarse), limit);
+    const Excursion in = excursion(positions, triangles, MeshSurface(positions, coarse), limit);
     if (out.strays.empty() && in.strays.empty()) return {std::move(coarse), std::max(out.distance, in.distance)};
     keep(kept, coarse, out.strays);
     keep(kept, triangles, in.strays);

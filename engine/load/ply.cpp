@@ -26,7 +26,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   Format format = Format::ascii;
   std::vector<Element> elements;
   std::uint64_t vertices = 0;  ///< 0 when there is no such element
@@ -86,8 +86,8 @@ void check_size(const Text& text, Format format, const Element& element) {
               "' do not fit into the file; is it complete?");
 }
 
-Header parse_header(Text& text) {
-  Header header;
+PlyHeader parse_header(Text& text) {
+  PlyHeader header;
   if (text.rest_of_line() != "ply") text.fail_at(1, "is no PLY file: it does not begin with 'ply'");
   while (true) {
     const std::string_view keyword = text.word();
@@ -162,7 +162,7 @@ class BinaryValues {
 template <class Values>
 class Body {
  public:
-  Body(Values values, const Header& header) : values_(std::move(values)), header_(header) {}
+  Body(Values values, const PlyHeader& header) : values_(std::move(values)), header_(header) {}
 
   FaceList read() {
     for (const Element& element : header_.elements) {
@@ -249,7 +249,7 @@ class Body {
   }
 
   Values values_;
-  const Header& header_;
+  const PlyHeader& header_;
   FaceList list_;
   bool has_normals_ = false;
 };
@@ -258,7 +258,7 @@ class Body {
 
 FaceList read_ply(std::string_view data, const std::filesystem::path& file) {
   Text text(data, file);
-  const Header header = parse_header(text);
+  const PlyHeader header = parse_header(text);
   if (header.format == Format::ascii) return Body(AsciiValues(text), header).read();
   const bool swap = (header.format == Format::big) == (std::endian::native == std::endian::little);
   return Body(BinaryValues(data.substr(text.offset()), file, swap), header).read();

@@ -14,7 +14,7 @@ struct Way {
 };
 
 /// Followed by quadrics, and the triangles that stay.
-struct Header {
+struct RecognitionHeader {
   std::uint64_t quadrics = 0, rest = 0;
 };
 
@@ -60,7 +60,7 @@ std::optional<Recognition> find(const std::filesystem::path& file, std::size_t t
   const auto content = read_mesh_file(file);
   if (!content) return {};
   MeshFileReader reader(*content);
-  Header header;
+  RecognitionHeader header;
   std::vector<Kept> kept;
   Recognition found;
   if (!reader.read(header) || !reader.read(kept, header.quadrics) || !reader.read(found.rest, header.rest) ||
@@ -84,7 +84,8 @@ Recognition recognise_cached(const Mesh& mesh, double tolerance, Pieces pieces) 
   Recognition result = recognise(mesh, tolerance, pieces);
   std::vector<Kept> kept;
   for (const RecognisedQuadric& q : result.quadrics) kept.push_back(to_kept(q));
-  write_mesh_file(file, {bytes_of(Header{kept.size(), result.rest.size()}), bytes_of(kept), bytes_of(result.rest)});
+  write_mesh_file(
+      file, {bytes_of(RecognitionHeader{kept.size(), result.rest.size()}), bytes_of(kept), bytes_of(result.rest)});
   return result;
 }
 

@@ -93,17 +93,17 @@ double squared_reach(const Corners& from, const Corners& to) {
   return std::max({squared_distance(from[0], to), squared_distance(from[1], to), squared_distance(from[2], to)});
 }
 
-Surface::Surface(std::span<const glm::dvec3> positions, std::vector<glm::uvec3> triangles)
+MeshSurface::MeshSurface(std::span<const glm::dvec3> positions, std::vector<glm::uvec3> triangles)
     : positions_(positions), triangles_(std::move(triangles)), bvh_(build_over(positions_, triangles_)) {}
 
-struct Surface::Query {
+struct MeshSurface::Query {
   const Corners& part;
   double limit;
   glm::dvec3 middle;  // of the part, in the frame of the BVH as is the square
   double squared_radius;
 };
 
-std::optional<double> Surface::first_near(std::uint32_t at, const Query& query) const {
+std::optional<double> MeshSurface::first_near(std::uint32_t at, const Query& query) const {
   const BinaryBvh::Node& node = bvh_.nodes[at];
   if (node.leaf()) {
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -122,14 +122,14 @@ std::optional<double> Surface::first_near(std::uint32_t at, const Query& query) 
 }
 
 /// Of the one triangle that was found to be near all of the part.
-std::optional<double> Surface::near_one(const Corners& part, double limit) const {
+std::optional<double> MeshSurface::near_one(const Corners& part, double limit) const {
   if (triangles_.empty()) return {};
   const double radius = limit * bvh_.frame.scale * (1 + 1e-9);
   const glm::dvec3 middle = ((part[0] + part[1] + part[2]) / 3. - bvh_.frame.center) * bvh_.frame.scale;
   return first_near(0, {part, limit, middle, radius * radius});
 }
 
-std::optional<double> Surface::bound(const Corners& part, double limit, int cuts) const {
+std::optional<double> MeshSurface::bound(const Corners& part, double limit, int cuts) const {
   if (const auto reach = near_one(part, limit)) return reach;
   if (cuts == most_cuts || longest_edge(part) < smallest_part * limit) return {};
   for (const glm::dvec3& corner : part)
@@ -143,10 +143,12 @@ std::optional<double> Surface::bound(const Corners& part, double limit, int cuts
   return largest;
 }
 
-std::optional<double> Surface::bound(const Corners& triangle, double limit) const { return bound(triangle, limit, 0); }
+std::optional<double> MeshSurface::bound(const Corners& triangle, double limit) const {
+  return bound(triangle, limit, 0);
+}
 
 Excursion excursion(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles,
-                    const Surface& surface, double limit) {
+                    const MeshSurface& surface, double limit) {
   std::vector<double> bounds(triangles.size());
   tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
     bounds[i] = surface.bound(corners(positions, triangles[i]), limit).value_or(infinity);

@@ -35,9 +35,9 @@ double squared_reach(const Corners& from, const Corners& to);
 bool is_within(const Corners& from, const Corners& to, double squared_distance);
 
 /// A triangle mesh that is asked how far others are from it. `positions` must outlive it.
-class Surface {
+class MeshSurface {
  public:
-  Surface(std::span<const glm::dvec3> positions, std::vector<glm::uvec3> triangles);
+  MeshSurface(std::span<const glm::dvec3> positions, std::vector<glm::uvec3> triangles);
 
   /// A bound, at most `limit`, on the distance of the points of `triangle` from this surface: proven by cutting the
   /// triangle into parts, each near one triangle of the surface. Nothing where no such proof was found.
@@ -61,6 +61,6 @@ struct Excursion {
 
 /// Of triangles from a surface.
 Excursion excursion(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles,
-                    const Surface& surface, double limit);
+                    const MeshSurface& surface, double limit);
 
 }  // namespace rayengine

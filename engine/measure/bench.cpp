@@ -12,7 +12,6 @@
 namespace rayengine {
 namespace {
 
-constexpr int runs = 9;                    // timed, after one to warm up
 constexpr std::size_t sample_rays = 2048;  // checked against the oracle
 
 /// At most `most` rays: whole runs of neighbours, spread evenly, so that what is coherent stays so.
@@ -129,11 +128,11 @@ std::vector<BenchRow> bench(const Scene& scene, const BenchOptions& options, std
   const std::vector<RaySet> sets = ray_sets(scene, options);
   const auto reference = make_reference_tracer(scene.geometry);
   Batched oracle(*reference);
-  Steps steps(options, sets.size() * entries.size() * (runs + 2));
+  Steps steps(options, sets.size() * entries.size() * (timed_runs + 2));
   std::vector<BenchRow> rows;
   for (const RaySet& set : sets) {
     for (Entry& entry : entries) warm_up(entry, set), steps.done();
-    for (int run = 0; run < runs; ++run)
+    for (int run = 0; run < timed_runs; ++run)
       for (Entry& entry : entries) time_run(entry, set), steps.done();
     for (Entry& entry : entries) {
       rows.push_back(to_row(entry, set));

@@ -11,6 +11,7 @@
 #include "accel/random.h"
 #include "accel/stopwatch.h"
 #include "accel/walk.h"
+#include "engine/measure/race.h"
 #include "engine/measure/rays.h"
 #include "engine/query.h"
 #include "engine/tracers.h"
@@ -19,7 +20,6 @@
 namespace rayengine {
 namespace {
 
-constexpr int runs = 9;
 constexpr glm::ivec2 picture{512, 512};
 constexpr std::uint32_t treelet_size = 512;  // what suits a GPU: see docs/performance.md
 constexpr std::uint32_t list_length = 4;
@@ -134,15 +134,15 @@ std::vector<CarrRow> carr(const Scene& scene, const std::string& name, const Car
                                              infinite.answer(rays.bounce, rays.bounce_hits, hits);
                                            },
                                            {}}}};
-  for (int run = 0; run <= runs; ++run) {  // the first warms up
+  for (int run = 0; run <= timed_runs; ++run) {  // the first warms up
     for (Contender& c : contenders)
       if (const double seconds = seconds_of(c.answer); run > 0) c.seconds.push_back(seconds);
-    if (options.progress) options.progress(static_cast<double>(run + 1) / (runs + 1));
+    if (options.progress) options.progress(static_cast<double>(run + 1) / (timed_runs + 1));
   }
   std::vector<CarrRow> rows;
   for (Contender& c : contenders) {
     std::ranges::sort(c.seconds);
-    rows.push_back({c.row, name, static_cast<double>(rays.count()) / c.seconds[runs / 2]});
+    rows.push_back({c.row, name, static_cast<double>(rays.count()) / c.seconds[timed_runs / 2]});
   }
   return rows;
 }

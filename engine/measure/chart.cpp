@@ -16,7 +16,7 @@
 namespace rayengine {
 namespace {
 
-constexpr int runs = 7;
+constexpr int chart_runs = 7;
 constexpr std::size_t trial_rays = 512;
 constexpr double longest_trial = 1, longest_run = 0.4;  // seconds
 constexpr std::size_t chunk = 64;                       // neighbouring rays that stay together
@@ -144,10 +144,10 @@ std::vector<ChartRow> chart(const Scene& scene, const ChartOptions& options, std
   std::size_t done = 0;
   const auto step = [&] {
     if (options.progress)
-      options.progress(static_cast<double>(++done) / static_cast<double>(methods.size() * (runs + 1)));
+      options.progress(static_cast<double>(++done) / static_cast<double>(methods.size() * (chart_runs + 1)));
   };
   for (Method& method : methods) run_seconds(*method.entry.contestant, set, method.entry.rays), step();
-  for (int run = 0; run < runs; ++run)
+  for (int run = 0; run < chart_runs; ++run)
     for (Method& method : methods) time_run(method.entry, set), step();
   std::vector<ChartRow> rows;
   for (Method& method : methods) {

@@ -12,7 +12,7 @@ namespace rayengine {
 namespace {
 
 constexpr std::size_t first_count = 16;                 // rays beyond bounds that are named
-constexpr std::size_t block = 1024;                     // doubtful rays that are asked again together
+constexpr std::size_t asked_together = 1024;            // doubtful rays
 constexpr double parts_of_bound[]{1, 0.125, 0.015625};  // small things lie within the bound
 
 bool has_nan(const Hit& h) {
@@ -126,8 +126,8 @@ class Judge {
   /// Asks the oracle about the neighbours of all rays in doubt, and keeps those that they do not explain.
   void ask_again(double part) {
     std::vector<Doubt> kept;
-    for (std::size_t first = 0; first < doubts_.size(); first += block) {
-      const auto some = std::span(doubts_).subspan(first, std::min(block, doubts_.size() - first));
+    for (std::size_t first = 0; first < doubts_.size(); first += asked_together) {
+      const auto some = std::span(doubts_).subspan(first, std::min(asked_together, doubts_.size() - first));
       const std::vector<Hit> answers = ask_around(some, part);
       const std::size_t count = answers.size() / some.size();
       for (std::size_t k = 0; k < some.size(); ++k)

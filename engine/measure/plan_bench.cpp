@@ -10,8 +10,6 @@
 namespace rayengine {
 namespace {
 
-constexpr int runs = 9;  // after one to warm up
-
 PictureCost picture(const Scene& scene, const std::string& name, const TracerOptions& options) {
   const auto tracer = make_tracer(name, scene.geometry, options);
   const RenderResult result = render(scene, *tracer, {.threads = options.threads});
@@ -36,7 +34,7 @@ PlanBench bench_plan(const Scene& scene, const PlanOptions& options, int threads
                      const std::function<void(double share)>& progress) {
   std::vector<PictureCost> without, with;
   PlanBench result;
-  for (int run = 0; run <= runs; ++run) {
+  for (int run = 0; run <= timed_runs; ++run) {
     const PictureCost plain = picture(scene, "auto", {.threads = threads});
     const Planned planned = plan_scene(scene, options);
     const TracingPlan& tracing = planned.tracing;
@@ -46,7 +44,7 @@ PlanBench bench_plan(const Scene& scene, const PlanOptions& options, int threads
     cost.planning = planned.seconds;
     result.replaced = planned.model.replaced.size();
     if (run > 0) without.push_back(plain), with.push_back(cost);
-    if (progress) progress(static_cast<double>(run + 1) / (runs + 1));
+    if (progress) progress(static_cast<double>(run + 1) / (timed_runs + 1));
   }
   result.without = median(without);
   result.with = median(with);

@@ -23,6 +23,7 @@ struct Entry {
   std::vector<double> rates;  ///< Mrays/s of the runs
 };
 
+inline constexpr int timed_runs = 9;             ///< after one to warm up
 inline constexpr std::size_t probe_rays = 4096;  ///< that tell how slow one is
 
 /// Seconds for one query of the first `count` rays, on poisoned buffers.

@@ -12,6 +12,7 @@
 #include "accel/ray_cone.h"
 #include "engine/query.h"
 #include "engine/render/departure.h"
+#include "engine/render/reversed_bits.h"
 #include "engine/render/scatter.h"
 
 namespace rayengine {
@@ -63,16 +64,6 @@ Sphere around(const std::vector<Sphere>& spheres) {
   return all;
 }
 
-/// Van der Corput's sequence in base 2.
-double reversed_bits(std::uint32_t i) {
-  i = (i << 16) | (i >> 16);
-  i = ((i & 0x00FF00FFu) << 8) | ((i & 0xFF00FF00u) >> 8);
-  i = ((i & 0x0F0F0F0Fu) << 4) | ((i & 0xF0F0F0F0u) >> 4);
-  i = ((i & 0x33333333u) << 2) | ((i & 0xCCCCCCCCu) >> 2);
-  i = ((i & 0x55555555u) << 1) | ((i & 0xAAAAAAAAu) >> 1);
-  return i * 0x1p-32;
-}
-
 struct Flight {
   Ray ray;
   glm::vec3 power{0};
@@ -99,7 +90,8 @@ class Beam {
   }
 
   Flight photon(std::uint32_t i) const {
-    const double share = (i + 0.5) / static_cast<double>(photons_), turn = 2 * std::numbers::pi * reversed_bits(i);
+    const double share = (i + 0.5) / static_cast<double>(photons_),
+                 turn = 0x1p-31 * std::numbers::pi * reversed_bits(i);
     const glm::dvec3 side = std::cos(turn) * frame_[0] + std::sin(turn) * frame_[1];
     const double cosine = 1 - share * (1 - cosine_), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     Flight f{.power = power_, .spreads = spreads_, .number = i};

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/render/reversed_bits.h"
+
 namespace rayengine {
 namespace {
 
@@ -36,12 +38,6 @@ QuantileTable make_quantiles() {
   QuantileTable table;
   for (int i = 0; i <= quantile_steps; ++i) table[i] = invert_share(static_cast<double>(i) / quantile_steps);
   return table;
-}
-
-std::uint32_t reversed_bits(std::uint32_t a) {
-  std::uint32_t result = 0;
-  for (int bit = 0; bit < 32; ++bit) result |= (a >> bit & 1u) << (31 - bit);
-  return result;
 }
 
 /// Sobol's second dimension: its direction numbers are the rows of Pascal's triangle modulo 2.

@@ -9,7 +9,7 @@ namespace rayengine {
 namespace {
 
 constexpr int smallest_side = 8;
-constexpr int color_channels = 4;
+constexpr int rgba = 4;
 
 /// The even bits of a number, moved together.
 int even_bits(std::uint32_t morton) {
@@ -67,7 +67,7 @@ void TileRenderer::trace_aovs(Image& image) {
   for (std::size_t i = 0; i < pixels_.size(); ++i)
     write_aovs(options_.aovs, picture_.geometry, aov_rays_[i], aov_hits_[i],
                object_number(picture_.object_numbers, aov_hits_[i].object),
-               image.pixel(pixels_[i].x, pixels_[i].y) + color_channels);
+               image.pixel(pixels_[i].x, pixels_[i].y) + rgba);
 }
 
 void TileRenderer::render(std::size_t tile, Image& image) {

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 namespace rayengine {
+
+/// Seconds.
+inline constexpr double forever = std::numeric_limits<double>::infinity();
 
 /// How long a device takes for a batch: seconds = latency + rays * per_ray, fitted to what was measured by least
 /// squares in which old batches count less and less. A batch that waited behind another one hides its latency there, so

@@ -7,8 +7,6 @@
 namespace rayengine {
 namespace {
 
-constexpr double forever = std::numeric_limits<double>::infinity();
-
 /// Log-normal with mean 1.
 double noisy(Random& random, double deviation) {
   if (deviation == 0) return 1;

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "accel/random.h"
+#include "engine/schedule/cost_model.h"
 
 namespace rayengine {
 
@@ -16,12 +16,12 @@ struct SpeedChange {
 
 /// A GPU made of numbers: batches pass one after another, and each is under way for `latency` seconds besides.
 struct MadeGpu {
-  double latency = 0, per_ray = 1e-7;                       ///< seconds
-  double noise = 0;                                         ///< relative standard deviation of a batch's time
-  double walk = 0;                                          ///< processor time of one thread to send a ray
-  std::vector<SpeedChange> speed;                           ///< in order
-  double breaks = std::numeric_limits<double>::infinity();  ///< from then on every batch comes back with an error
-  std::size_t largest = 262144, depth = 3;                  ///< rays of a batch, batches at once
+  double latency = 0, per_ray = 1e-7;       ///< seconds
+  double noise = 0;                         ///< relative standard deviation of a batch's time
+  double walk = 0;                          ///< processor time of one thread to send a ray
+  std::vector<SpeedChange> speed;           ///< in order
+  double breaks = forever;                  ///< from then on every batch comes back with an error
+  std::size_t largest = 262144, depth = 3;  ///< rays of a batch, batches at once
 };
 
 struct MadeMachine {

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rayengine {
 namespace {
 
-constexpr double forever = std::numeric_limits<double>::infinity();
 constexpr double percentile_99 = 2.33;  // standard deviations
 constexpr double hidden_latency = 9;    // a batch is large enough when it works so many times as long as it waits
 constexpr double first_share = 0.15;    // of the pool, in each batch sent to a lane before it answers

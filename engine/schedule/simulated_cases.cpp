@@ -10,7 +10,6 @@ namespace {
 
 constexpr double per_ray = 1e-7;  // of the made processor, all threads together
 constexpr double noise = 0.05;
-constexpr double forever = std::numeric_limits<double>::infinity();
 constexpr std::array ratios = {0.001, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1000.0};
 constexpr std::array latencies = {0.0, 1e-4, 1e-3, 3e-3, 1e-2};
 constexpr std::array<std::size_t, 2> pools = {1'000'000, 10'000'000};

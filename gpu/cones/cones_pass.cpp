@@ -8,8 +8,8 @@
 namespace rayengine {
 namespace {
 
-enum Unit : GLuint { apexes_unit = 9, axes_unit = 10, spheres_unit = 11 };
-enum Location : GLint { tile_location = 5, extent_location = 6, first_sphere_location = 7 };
+enum : GLuint { apexes_unit = 9, axes_unit = 10, spheres_unit = 11 };
+enum : GLint { tile_location = 5, extent_location = 6, first_sphere_location = 7 };
 
 Program make_build() {
   return make_screen_program("cones",

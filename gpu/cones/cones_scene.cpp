@@ -69,7 +69,7 @@ BufferTexture spheres_of(const Geometry& g, const Treelets& list) {
   }
   for (const std::uint32_t i : list.quadrics)
     texels.push_back(sphere_texel(enclosing_sphere(g, g.quadrics[i]), list.frame));
-  return make_buffer_texture(GL_RGBA32F, std::as_bytes(std::span(texels)));
+  return make_buffer_texture(GL_RGBA32F, texels);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 namespace rayengine {
 namespace {
 
-enum Unit : GLuint { indices_unit = 12, environment_unit = 13, normals_unit = 14 };
+enum : GLuint { indices_unit = 12, environment_unit = 13, normals_unit = 14 };
 /// Of the eye's pass, then of the one that scatters.
-enum Location : GLint { eye_location = 1, corner_location, right_location, down_location, picture_location };
+enum : GLint { eye_location = 1, corner_location, right_location, down_location, picture_location };
 constexpr GLint last_rank_location = 5;
 
 std::shared_ptr<const Geometry> checked(std::shared_ptr<const Geometry> geometry) {
@@ -52,7 +52,7 @@ BufferTexture upload_indices(const Geometry& geometry, std::span<const float> in
                   std::to_string(indices.size()));
     texels.push_back(indices[material]);
   }
-  return make_buffer_texture(GL_R32F, std::as_bytes(std::span(texels)));
+  return make_buffer_texture(GL_R32F, texels);
 }
 
 /// By falling rank, as the triangles lie; zeros where a mesh has none.
@@ -67,7 +67,7 @@ BufferTexture upload_normals(const Geometry& geometry) {
       texels.emplace_back(own == glm::vec3(0) ? own : glm::vec3(glm::normalize(n)), 0);
     }
   }
-  return make_buffer_texture(GL_RGBA32F, std::as_bytes(std::span(texels)));
+  return make_buffer_texture(GL_RGBA32F, texels);
 }
 
 Texture upload(const CastEnvironment& e) {

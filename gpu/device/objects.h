@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace rayengine {
 
@@ -86,6 +87,10 @@ struct BufferTexture {
   void bind(GLuint unit) const { glBindTextureUnit(unit, object.id()); }
 };
 BufferTexture make_buffer_texture(GLenum internal_format, std::span<const std::byte> content);
+template <class T>
+BufferTexture make_buffer_texture(GLenum internal_format, const std::vector<T>& content) {
+  return make_buffer_texture(internal_format, std::as_bytes(std::span(content)));
+}
 
 /// A point in the command stream that the CPU can ask after.
 class Fence {

@@ -52,7 +52,7 @@ class Questioner {
   }
 
   Answers ask(const std::string& question, const std::vector<Operands>& operands) {
-    const BufferTexture input = make_buffer_texture(GL_RGBA32UI, std::as_bytes(std::span(operands)));
+    const BufferTexture input = make_buffer_texture(GL_RGBA32UI, operands);
     input.bind(0);
     const std::vector<std::string> defines{"QUESTION=" + question, "SIDE=" + std::to_string(side)};
     compute_ ? dispatch(defines) : draw(defines);

@@ -11,14 +11,8 @@
 namespace rayengine {
 namespace {
 
-enum Location : GLint {
-  reflections_location = 20,
-  shadows_location,
-  light_count_location,
-  background_location,
-  start_location
-};
-enum Unit : GLuint { gathered_unit = 15, weights_unit = 16 };
+enum : GLint { reflections_location = 20, shadows_location, light_count_location, background_location, start_location };
+enum : GLuint { gathered_unit = 15, weights_unit = 16 };
 
 Program make_eye_program() {
   return make_screen_program("eye", {0,

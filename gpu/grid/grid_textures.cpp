@@ -10,12 +10,12 @@
 namespace rayengine {
 namespace {
 
-enum Unit : GLuint { voxels_unit = 9, triangle_members_unit = 10, quadric_members_unit = 11 };
-enum Location : GLint { lower_location = 5, cell_location = 6, counts_location = 7 };
+enum : GLuint { voxels_unit = 9, triangle_members_unit = 10, quadric_members_unit = 11 };
+enum : GLint { lower_location = 5, cell_location = 6, counts_location = 7 };
 
 BufferTexture upload_numbers(const std::vector<std::uint32_t>& numbers, const char* what, const GpuInfo& gpu) {
   require_texels(numbers.size(), what, gpu);
-  return make_buffer_texture(GL_R32UI, std::as_bytes(std::span(numbers)));
+  return make_buffer_texture(GL_R32UI, numbers);
 }
 
 void require_short_lists(const Treelets& lists) {

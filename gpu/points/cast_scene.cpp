@@ -2,12 +2,12 @@
 
 #include "accel/tracer.h"
 #include "gpu/device/probe.h"
+#include "gpu/points/locations.h"
 
 namespace rayengine {
 namespace {
 
-enum Location : GLint {
-  steps_location = 8,
+enum : GLint {
   scene_lower_location = 16,
   scene_upper_location,
   structure_location,  // the number of triangles, or the first list

@@ -8,11 +8,12 @@
 #include "gpu/device/await.h"
 #include "gpu/device/probe.h"
 #include "gpu/points/find_sources.h"
+#include "gpu/points/locations.h"
 
 namespace rayengine {
 namespace {
 
-enum Location : GLint { steps_location = 8, first_list_location = 18, any_hit_location };
+enum : GLint { first_list_location = 18, any_hit_location };
 
 /// As gpu/shaders/points/tracer.vert.glsl reads it.
 struct Point {

@@ -6,17 +6,18 @@
 #include "gpu/points/cast_method.h"
 #include "gpu/points/fresh_rays.h"
 #include "gpu/points/layered_target.h"
+#include "gpu/points/locations.h"
 #include "gpu/points/point_stream.h"
 
 namespace rayengine {
 namespace {
 
-enum Location : GLint { reflects_location = 24, sees_background_location, generation_location };
+enum : GLint { reflects_location = 24, generation_location = 26 };
 
 /// Small vertices that none follow need less handed on from stage to stage.
 bool only_casts(const CastScene& scene) { return !scene.options().fat && !scene.followed(); }
 
-Program make_program(const CastScene& scene) {
+Program points_program(const CastScene& scene) {
   const Sources end = CastScene::shading_sources();
   const auto stage = [&](GLenum type, const Sources& sources) {
     return Stage{type, scene.ray_sources() + sources, scene.defines()};
@@ -45,7 +46,7 @@ class PointsMethod : public CastMethod {
  public:
   PointsMethod(CastScene& scene, const CastView& view)
       : scene_(scene),
-        program_(make_program(scene)),
+        program_(points_program(scene)),
         target_(view.width, view.height, scene.targets(), scene.layers()),
         fresh_(fresh_rays(format(), view)) {
     for (int i = 0; i < std::min(2, passes() - 1); ++i) streams_.emplace_back(room(view), format());

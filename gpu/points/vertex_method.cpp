@@ -3,14 +3,15 @@
 #include "gpu/points/cast_method.h"
 #include "gpu/points/fresh_rays.h"
 #include "gpu/points/layered_target.h"
+#include "gpu/points/locations.h"
 
 namespace rayengine {
 namespace {
 
-enum Location : GLint { sees_background_location = 25, kind_location = 27 };
+constexpr GLint kind_location = 27;
 enum Kind : GLint { camera = -2, reflected = -1 };
 
-Program make_program(const CastScene& scene) {
+Program vertex_program(const CastScene& scene) {
   return Program("points without geometry shader",
                  {{GL_VERTEX_SHADER,
                    scene.ray_sources() + CastScene::tracing_sources() + CastScene::shading_sources() +
@@ -27,7 +28,7 @@ class VertexMethod : public CastMethod {
  public:
   VertexMethod(CastScene& scene, const CastView& view)
       : scene_(scene),
-        program_(make_program(scene)),
+        program_(vertex_program(scene)),
         target_(view.width, view.height, scene.targets(), scene.layers()),
         fresh_(fresh_rays(format(), view)) {
     for (int i = 0; i < 2 && scene.followed(); ++i) streams_.emplace_back(fresh_.capacity(), format());

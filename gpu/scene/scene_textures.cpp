@@ -19,11 +19,6 @@ std::uint32_t bits(double a) { return std::bit_cast<std::uint32_t>(static_cast<f
 /// Infinite sides become numbers that arithmetic cannot turn into NaN.
 std::uint32_t finite_bits(double a) { return bits(std::clamp(a, -1e37, 1e37)); }
 
-template <class T>
-BufferTexture texture_of(GLenum format, const std::vector<T>& content) {
-  return make_buffer_texture(format, std::as_bytes(std::span(content)));
-}
-
 /// Three texels: the corners, and in the first one's w the rank.
 void append_triangle(std::vector<Texel>& to, const FlatScene& scene, const LocalFrame& frame, std::uint32_t triangle) {
   for (int corner = 0; corner < 3; ++corner) {
@@ -120,9 +115,9 @@ SceneTextures upload_primitives(const FlatScene& scene, const LocalFrame& frame,
   const bool balls = all_balls(result.types);
   for (const std::uint32_t i : quadric_order) append_quadric(quadrics, scene, frame, balls, i);
   for (const GeneralForm& form : scene.geometry->forms) append_form(forms, form);
-  result.triangles = texture_of(GL_RGBA32UI, triangles);
-  result.quadrics = texture_of(GL_RGBA32UI, quadrics);
-  result.forms = texture_of(GL_RGBA32UI, forms);
+  result.triangles = make_buffer_texture(GL_RGBA32UI, triangles);
+  result.quadrics = make_buffer_texture(GL_RGBA32UI, quadrics);
+  result.forms = make_buffer_texture(GL_RGBA32UI, forms);
   result.bytes = result.triangles.buffer.bytes + result.quadrics.buffer.bytes + result.forms.buffer.bytes;
   return result;
 }
@@ -144,7 +139,7 @@ void SceneTextures::bind() const {
 BufferTexture upload_ranges(const Geometry& geometry, const Treelets& treelets, const std::vector<KernelType>& types,
                             const GpuInfo& gpu) {
   require_texels((treelets.treelets.size() + 2) * types.size(), "treelets", gpu);
-  return texture_of(GL_RG32UI, ranges_of(geometry, treelets, types));
+  return make_buffer_texture(GL_RG32UI, ranges_of(geometry, treelets, types));
 }
 
 SceneTextures upload(const FlatScene& scene, const Treelets& treelets, const GpuInfo& gpu) {

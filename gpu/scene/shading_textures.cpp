@@ -10,12 +10,7 @@
 namespace rayengine {
 namespace {
 
-enum Unit : GLuint { owners_unit = 12, materials_unit = 13, lights_unit = 14 };
-
-template <class T>
-BufferTexture texture_of(GLenum format, const std::vector<T>& content) {
-  return make_buffer_texture(format, std::as_bytes(std::span(content)));
-}
+enum : GLuint { owners_unit = 12, materials_unit = 13, lights_unit = 14 };
 
 /// Of each primitive, by rank, its material.
 BufferTexture upload_owners(const Geometry& geometry, std::size_t material_count) {
@@ -28,7 +23,7 @@ BufferTexture upload_owners(const Geometry& geometry, std::size_t material_count
       throw Error("object " + std::to_string(ids.object) + " has material " + std::to_string(owners.back()) +
                   ", and there are " + std::to_string(material_count));
   }
-  return texture_of(GL_R32UI, owners);
+  return make_buffer_texture(GL_R32UI, owners);
 }
 
 BufferTexture upload_materials(std::span<const CastMaterial> materials) {
@@ -37,7 +32,7 @@ BufferTexture upload_materials(std::span<const CastMaterial> materials) {
     texels.emplace_back(m.color, m.ambient);
     texels.emplace_back(m.diffuse, m.specular, m.shininess, m.reflect);
   }
-  return texture_of(GL_RGBA32F, texels);
+  return make_buffer_texture(GL_RGBA32F, texels);
 }
 
 BufferTexture upload_lights(std::span<const CastLight> lights, const LocalFrame& frame) {
@@ -47,7 +42,7 @@ BufferTexture upload_lights(std::span<const CastLight> lights, const LocalFrame&
     texels.emplace_back(glm::vec3(place), l.directional ? 0 : 1);
     texels.emplace_back(l.color, 0);
   }
-  return texture_of(GL_RGBA32F, texels);
+  return make_buffer_texture(GL_RGBA32F, texels);
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ std::string complaint(const Work& work) {
 
 bool says(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-using MakeTracer = std::unique_ptr<Tracer> (*)();
-class LostDevice : public testing::TestWithParam<MakeTracer> {
+using MakeLost = std::unique_ptr<Tracer> (*)();
+class LostDevice : public testing::TestWithParam<MakeLost> {
  protected:
   std::string complaint_of_query() {
     return complaint([this] {

@@ -22,13 +22,13 @@ std::shared_ptr<const Geometry> mixed() {
   return builder.build();
 }
 
-struct Answers {
+struct Replies {
   std::vector<Hit> hits;
   std::vector<std::uint32_t> status;
 };
 
-Answers ask(Tracer& tracer, std::span<const Ray> rays) {
-  Answers a{std::vector<Hit>(rays.size()), std::vector<std::uint32_t>(rays.size())};
+Replies ask(Tracer& tracer, std::span<const Ray> rays) {
+  Replies a{std::vector<Hit>(rays.size()), std::vector<std::uint32_t>(rays.size())};
   tracer.closest(rays, a.hits, RayClass::primary);
   tracer.any(rays, a.status, RayClass::shadow);
   return a;
@@ -46,7 +46,7 @@ void expect_the_same(const GridTracerOptions& options) {
   const auto rays = rays_through(*geometry);
   const auto usual = make_grid_tracer(geometry, Precision::robust, {.policy = GridPolicy{}});
   const auto other = make_grid_tracer(geometry, Precision::robust, options);
-  const Answers a = ask(*usual, rays), b = ask(*other, rays);
+  const Replies a = ask(*usual, rays), b = ask(*other, rays);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(a.hits[i].t, b.hits[i].t) << "ray " << i;

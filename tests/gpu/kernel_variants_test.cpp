@@ -27,16 +27,16 @@ std::shared_ptr<const Geometry> balls(const QuadricShape& hidden, const glm::dve
   return builder.build();
 }
 
-using MakeTracer = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>);
+using MakeOne = std::unique_ptr<Tracer> (*)(std::shared_ptr<const Geometry>);
 
-std::vector<Hit> hits_of(MakeTracer make, const std::shared_ptr<const Geometry>& geometry) {
+std::vector<Hit> hits_of(MakeOne make, const std::shared_ptr<const Geometry>& geometry) {
   const auto rays = random_rays({glm::dvec3(-6), glm::dvec3(6)}, 4000);
   std::vector<Hit> hits(rays.size());
   make(geometry)->closest(rays, hits, RayClass::bounce);
   return hits;
 }
 
-void expect_same(MakeTracer make) {
+void expect_same(MakeOne make) {
   const auto special = hits_of(make, balls({}, glm::dvec3(0.01)));
   const auto turned = hits_of(make, balls({}, {0.01, 0.01, 0.02}));
   const auto clipped = hits_of(make, balls({QuadricType::sphere, false, {{-1, 0.5}}, {}, {}}, glm::dvec3(0.01)));

@@ -9,7 +9,7 @@
 namespace rayengine {
 namespace {
 
-std::shared_ptr<const Geometry> one_of_each_type() {
+std::shared_ptr<const Geometry> bare_quadrics() {
   GeometryBuilder builder;
   for (int i = 0; i < 9; ++i) {
     const auto type = static_cast<QuadricType>(i);
@@ -22,7 +22,7 @@ std::shared_ptr<const Geometry> one_of_each_type() {
 }
 
 TEST(Objects, HalvesAreRightToTheirPrecision) {
-  const auto geometry = one_of_each_type();
+  const auto geometry = bare_quadrics();
   const auto objects = make_objects_tracer(geometry, Precision::half);
   const auto oracle = make_reference_tracer(geometry);
   const auto rays = random_rays(geometry->bounds, 4000);
@@ -64,7 +64,7 @@ TEST(Objects, TestsMeshesThatOnePassIsTooShortFor) {
 }
 
 TEST(Objects, HalvesListNoHits) {
-  const auto objects = make_objects_tracer(one_of_each_type(), Precision::half);
+  const auto objects = make_objects_tracer(bare_quadrics(), Precision::half);
   EXPECT_THROW(objects->all({}), Error);
 }
 

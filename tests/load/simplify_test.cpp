@@ -399,7 +399,7 @@ TEST(SurfaceDistance, IsThatOfTheNearestPoint) {
 TEST(SurfaceDistance, BoundsWhatIsNearAndNamesWhatStrays) {
   const Mesh low = flat_sheet(4);
   Mesh high = moved(flat_sheet(7), {0, 0, 0.1});
-  const Surface surface(low.positions, low.triangles);
+  const MeshSurface surface(low.positions, low.triangles);
   const Excursion near = excursion(high.positions, high.triangles, surface, 0.101);
   EXPECT_TRUE(near.strays.empty());
   EXPECT_GE(near.distance, 0.1);

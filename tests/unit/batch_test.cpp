@@ -17,7 +17,9 @@ struct Query {
   std::shared_ptr<Job> job;
 
   explicit Query(std::size_t count)
-      : rays(count), status(count, 99), job(std::make_shared<Job>(WorkKind{.any = true}, rays, Answers{{}, status})) {}
+      : rays(count),
+        status(count, 99),
+        job(std::make_shared<Job>(WorkKind{.any = true}, rays, AnswerSpans{{}, status})) {}
 };
 
 /// A batch of all rays of two queries, which lie across its blocks.

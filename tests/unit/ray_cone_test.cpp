@@ -15,7 +15,7 @@
 namespace rayengine {
 namespace {
 
-using test::holds, test::Point, test::somewhere, test::bundle, test::Tile, test::Wide;
+using test::holds, test::WidePoint, test::somewhere, test::bundle, test::Tile, test::Wide;
 
 class ConeOf : public testing::TestWithParam<test::TileKind> {};
 INSTANTIATE_TEST_SUITE_P(Tiles, ConeOf, testing::ValuesIn(test::tile_kinds),
@@ -34,13 +34,13 @@ TEST_P(ConeOf, HoldsItsRays) {
 }
 
 /// A sphere that the ray touches from outside at t: the hardest to keep.
-void expect_kept(const RayCone& cone, const ConeRay& ray, Random& random) {
+void expect_held(const RayCone& cone, const ConeRay& ray, Random& random) {
   const double radius = std::pow(10, random.between(-6, 2)), t = std::pow(10, random.between(-6, 3));
   const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction)), o(ray.origin);
   const glm::dvec3 side = glm::normalize(glm::cross(d, random.direction()));
   const glm::vec3 center(o + t * d + radius * side);
-  const Point to(Point(center) - Point(ray.origin));
-  const Wide along = dot(to, Point(ray.direction)), dd = dot(Point(ray.direction), Point(ray.direction));
+  const WidePoint to(WidePoint(center) - WidePoint(ray.origin));
+  const Wide along = dot(to, WidePoint(ray.direction)), dd = dot(WidePoint(ray.direction), WidePoint(ray.direction));
   const Wide across = dot(to, to) - (along > 0 ? along * along / dd : 0);  // from the ray, not from its line
   const float reach = float_above(std::sqrt(static_cast<double>(across)) * (1 + 1e-15));
   EXPECT_TRUE(may_meet(cone, center, reach)) << "radius " << radius << ", t " << t;
@@ -51,7 +51,7 @@ TEST_P(ConeOf, KeepsWhatItsRaysTouch) {
     Random random(seed, 2);
     const Tile tile = GetParam().make(random);
     const RayCone cone = enclosing_cone(tile);
-    for (const ConeRay& ray : tile) expect_kept(cone, ray, random);
+    for (const ConeRay& ray : tile) expect_held(cone, ray, random);
     ASSERT_FALSE(HasFailure()) << "tile " << seed;
   }
 }

@@ -21,7 +21,7 @@ std::vector<Hit> trace(const std::shared_ptr<const Geometry>& geometry, std::spa
   return hits;
 }
 
-std::shared_ptr<const Geometry> sphere() {
+std::shared_ptr<const Geometry> unit_sphere() {
   GeometryBuilder builder;
   builder.add(QuadricShape{}, 0, Affine::translate({3, 0, 0}));
   return builder.build();
@@ -54,7 +54,7 @@ TEST(Rays, RandomRaysStartOnTheSphereAboutTheBoundsAndAreRepeatable) {
 
 TEST(Rays, ShadowRaysEndAtTheirLight) {
   Scene scene;
-  scene.geometry = sphere();
+  scene.geometry = unit_sphere();
   Light point, below, sun;
   point.position = {3, 0, 10};
   below.position = {3, 0, -10};
@@ -71,7 +71,7 @@ TEST(Rays, ShadowRaysEndAtTheirLight) {
 }
 
 TEST(Rays, BouncesLeaveConvexBodiesForGood) {
-  const auto geometry = sphere();
+  const auto geometry = unit_sphere();
   const auto rays = random_rays(geometry->bounds, 500);
   const auto hits = trace(geometry, rays);
   const auto bounces = bounce_rays(*geometry, rays, hits);

@@ -21,12 +21,13 @@ struct Stop {
 };
 
 /// What a test asks of a scene: its boxes as given, and what a walk may be judged by.
-struct Scene {
+struct WalkScene {
   std::vector<TreeletPrimitive> primitives;
   Treelets treelets;
   std::vector<std::uint32_t> treelet_of;  ///< of each primitive; ids count through all
 
-  Scene(std::vector<TreeletPrimitive> p, std::uint32_t K) : primitives(std::move(p)), treelet_of(primitives.size()) {
+  WalkScene(std::vector<TreeletPrimitive> p, std::uint32_t K)
+      : primitives(std::move(p)), treelet_of(primitives.size()) {
     treelets = build_treelets(primitives, K);
     for (std::uint32_t i = 0; i < treelets.treelets.size(); ++i)
       for (std::uint32_t k = 0; k < treelets.treelets[i].triangle_count; ++k)
@@ -86,7 +87,7 @@ std::vector<TreeletEntry> whole_list(Isa isa, const Treelets& treelets, const Ra
 }
 
 /// All that walk() promises of the list of one ray, but resuming.
-void expect_right(Isa isa, const Scene& scene, const Ray& ray) {
+void expect_right(Isa isa, const WalkScene& scene, const Ray& ray) {
   const auto entries = whole_list(isa, scene.treelets, ray);
   std::vector<double> entry_of(scene.treelets.treelets.size(), infinity);
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -137,14 +138,12 @@ std::vector<Ray> random_rays(glm::dvec3 center, double scale, double distance, i
 
 class Walk : public testing::TestWithParam<Isa> {};
 
-}  // namespace
-
 INSTANTIATE_TEST_SUITE_P(EveryIsa, Walk, testing::ValuesIn(machine_isas()), [](const auto& info) {
   return std::string(info.param == Isa::sse2 ? "sse2" : info.param == Isa::avx2 ? "avx2" : "avx512");
 });
 
 TEST_P(Walk, ListsAllThatRandomRaysMeet) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   for (const double distance : {0.0, 0.5, 3.0, 1e4, 1e7})
     for (const Ray& ray : random_rays({}, 1, distance, 200))
       ASSERT_NO_FATAL_FAILURE(expect_right(GetParam(), scene, ray));
@@ -153,14 +152,14 @@ TEST_P(Walk, ListsAllThatRandomRaysMeet) {
 TEST_P(Walk, StandsAnyPlaceAndScale) {
   for (const double scale : {1e-200, 1e-12, 1e12, 1e200}) {
     const glm::dvec3 center = scale * glm::dvec3(1e5, -3e5, 7);
-    const Scene scene(clutter(center, scale), 8);
+    const WalkScene scene(clutter(center, scale), 8);
     for (const Ray& ray : random_rays(center, scale, 4, 100))
       ASSERT_NO_FATAL_FAILURE(expect_right(GetParam(), scene, ray));
   }
 }
 
 TEST_P(Walk, StandsDirectionsOfAnyLength) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   for (const Ray& ray : random_rays({}, 1, 3, 50)) {
     const auto expected = whole_list(GetParam(), scene.treelets, ray);
     for (const int exponent : {-990, -900, -30, 30, 900, 990}) {
@@ -177,7 +176,7 @@ TEST_P(Walk, StandsDirectionsOfAnyLength) {
 }
 
 TEST_P(Walk, MissesNothingAlongAxesAndInPlanes) {
-  const Scene scene(clutter({}, 1), 4);
+  const WalkScene scene(clutter({}, 1), 4);
   std::mt19937 random(2);
   std::uniform_int_distribution<int> lattice(-4, 4);
   for (int i = 0; i < 1000; ++i) {
@@ -193,7 +192,7 @@ TEST_P(Walk, MissesNothingAlongAxesAndInPlanes) {
 }
 
 TEST_P(Walk, MissesNothingFromFacesAndCornersOfBoxes) {
-  const Scene scene(clutter({1e6, 0, -1e6}, 3), 4);
+  const WalkScene scene(clutter({1e6, 0, -1e6}, 3), 4);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (std::size_t i = 0; i < scene.primitives.size(); i += 4) {
@@ -209,7 +208,7 @@ TEST_P(Walk, MissesNothingFromFacesAndCornersOfBoxes) {
 }
 
 TEST_P(Walk, KeepsToTheInterval) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1, 5);
   for (Ray ray : random_rays({}, 1, 2, 500)) {
@@ -225,7 +224,7 @@ TEST_P(Walk, KeepsToTheInterval) {
 }
 
 TEST_P(Walk, GoesOnWhereItStopped) {
-  const Scene scene(clutter({}, 1), 4);
+  const WalkScene scene(clutter({}, 1), 4);
   for (const double distance : {0.0, 3.0})
     for (const Ray& ray : random_rays({}, 1, distance, 200)) {
       const auto expected = whole_list(GetParam(), scene.treelets, ray);
@@ -246,7 +245,7 @@ TEST_P(Walk, GoesOnWhereItStopped) {
 }
 
 TEST_P(Walk, StopsEarlierWhenTmaxIsLowered) {
-  const Scene scene(clutter({}, 1), 4);
+  const WalkScene scene(clutter({}, 1), 4);
   for (Ray ray : random_rays({}, 1, 3, 200)) {
     const auto expected = whole_list(GetParam(), scene.treelets, ray);
     if (expected.size() < 4) continue;
@@ -264,7 +263,7 @@ TEST_P(Walk, StopsEarlierWhenTmaxIsLowered) {
 
 namespace {
 
-void expect_as_each_alone(Isa isa, const Scene& scene, const std::vector<Ray>& rays) {
+void expect_as_each_alone(Isa isa, const WalkScene& scene, const std::vector<Ray>& rays) {
   constexpr std::uint32_t capacity = 5;
   std::vector<WalkCursor> cursors(rays.size());
   std::vector<TreeletEntry> lists(rays.size() * capacity);
@@ -313,19 +312,19 @@ std::vector<Ray> bundles(double spread) {
 }  // namespace
 
 TEST_P(Walk, AnswersManyRaysAsItAnswersEach) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   expect_as_each_alone(GetParam(), scene, random_rays({}, 1, 2, 301));
 }
 
 TEST_P(Walk, AnswersRaysThatKeepTogetherAsItAnswersEach) {
-  const Scene fine(clutter({}, 1), 2), coarse(clutter({}, 1), 64);
+  const WalkScene fine(clutter({}, 1), 2), coarse(clutter({}, 1), 64);
   for (const double spread : {0.0, 1e-6, 1e-3, 0.1})
-    for (const Scene* scene : {&fine, &coarse})
+    for (const WalkScene* scene : {&fine, &coarse})
       ASSERT_NO_FATAL_FAILURE(expect_as_each_alone(GetParam(), *scene, bundles(spread))) << spread;
 }
 
 TEST_P(Walk, AnswersRaysAlongAnAxisTogetherAsItAnswersEach) {
-  const Scene scene(clutter({}, 1), 16);
+  const WalkScene scene(clutter({}, 1), 16);
   std::vector<Ray> rays;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) rays.push_back({{x / 32.0 - 1, y / 32.0 - 1, 3}, 0, {0, -0.0, -1}, infinity});
@@ -335,7 +334,7 @@ TEST_P(Walk, AnswersRaysAlongAnAxisTogetherAsItAnswersEach) {
 TEST_P(Walk, ListsAllThatIsMetByRaysThatMeetVeryMuch) {
   std::vector<TreeletPrimitive> row;
   for (std::uint32_t i = 0; i < 1500; ++i) row.push_back({{{i, 0, 0}, {i + 0.5, 1, 1}}, TreeletPrimitive::triangle, i});
-  const Scene scene(std::move(row), 1);
+  const WalkScene scene(std::move(row), 1);
   std::vector<Ray> apart, together;
   for (int k = 0; k < 64; ++k) {
     const double way = k % 2 ? 1 : -1, at = 0.1 + 0.01 * k;
@@ -350,7 +349,7 @@ TEST_P(Walk, ListsAllThatIsMetByRaysThatMeetVeryMuch) {
 }
 
 TEST_P(Walk, OfInvalidRaysIsEmpty) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   const double nan = std::nan("");
   const Ray invalid[] = {{{nan, 0, 0}, 0, {1, 0, 0}, infinity},     {{0, infinity, 0}, 0, {0, 1, 0}, infinity},
                          {{0, 0, 0}, 0, {0, nan, 1}, infinity},     {{0, 0, 0}, 0, {0, 1, -infinity}, infinity},
@@ -361,7 +360,7 @@ TEST_P(Walk, OfInvalidRaysIsEmpty) {
 }
 
 TEST_P(Walk, StandsRaysAtTheEndsOfTheRange) {
-  const Scene scene(clutter({}, 1), 8);
+  const WalkScene scene(clutter({}, 1), 8);
   for (const double far : {1e30, 1e100, 1e300})
     for (const double length : {1e-320, 1.0, 1e308}) {
       const Ray ray{{far, 0.1, 0.1}, 0, {-length, 0, 0}, infinity};
@@ -373,3 +372,5 @@ TEST_P(Walk, OfASceneWithoutBoxesIsEmpty) {
   const Treelets none = build_treelets({}, 8);
   EXPECT_TRUE(whole_list(GetParam(), none, {{0, 0, 0}, -infinity, {1, 0, 0}, infinity}).empty());
 }
+
+}  // namespace
