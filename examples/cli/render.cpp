@@ -17,6 +17,7 @@
 #include "examples/cli/planning.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
+#include "examples/cli/threads.h"
 
 namespace rayengine::cli {
 namespace {
@@ -175,6 +176,7 @@ std::pair<RenderStats, double> make_pictures(const Options& o, const Scene& scen
 int run(Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
+  const StartedThreads others(o.common.threads);
   LoadedScene loaded = load(o.scene, o.common);
   if (o.size) loaded.scene.camera.size = *o.size;
   check_size(loaded.scene.camera.size, 4 + 3 * o.render.aovs.size());
@@ -183,6 +185,7 @@ int run(Options& o) {
   const PlannedScene planned(o.planning, std::move(loaded.scene), expected, true, o.common);
   const Scene& scene = planned.scene();
   const MadeTracer made = planned.make_tracer(o.tracer, o.precision);
+  others.make_way();
   const auto [stats, writing] = make_pictures(o, scene, cameras, *made.tracer);
   const Seconds seconds{loaded.seconds, made.tracer->build_seconds(), stats.seconds, writing};
   Json plan = planned.json();

@@ -16,6 +16,7 @@
 #include "examples/cli/planning.h"
 #include "examples/cli/progress.h"
 #include "examples/cli/report.h"
+#include "examples/cli/threads.h"
 
 namespace rayengine::cli {
 namespace {
@@ -148,6 +149,7 @@ std::vector<Ray> sample(std::span<const Ray> rays, int count) {
 int run(const Options& o) {
   check(o);
   const ThreadLimit limit(o.common.threads);
+  const StartedThreads others(o.common.threads);
   const std::vector<Ray> rays = read_rays(o.rays);
   LoadedScene loaded = load(o.scene, o.common);
   const PlannedScene planned(o.planning, std::move(loaded.scene), static_cast<double>(rays.size()), false, o.common);
@@ -155,6 +157,7 @@ int run(const Options& o) {
   const MadeTracer made = planned.make_tracer(o.tracer, o.precision);
   const auto& tracer = made.tracer;
   say_rounding(o, geometry, *tracer);
+  others.make_way();
   const Stopwatch watch;
   HitLists lists = ask(o, *tracer, rays);
   if (o.query != "any") refine_all(geometry, *tracer, rays, lists.offsets, lists.hits);

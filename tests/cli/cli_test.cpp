@@ -234,6 +234,15 @@ TEST_F(CliRender, ThreadsDoNotChangeThePicture) {
   EXPECT_EQ(read_image(file("one.exr")).pixels, read_image(file("two.exr")).pixels);
 }
 
+TEST_F(CliRender, MoreThreadsThanCoresAreNoTrouble) {
+  ASSERT_EQ(run("render scene.nff -o one.exr --threads 1").code, 0);
+  const test::Outcome outcome = test::shell(
+      folder_.path(), "core=$(taskset -cp $$ | grep -oE '[0-9]+$') && taskset -c \"$core\" " RAYENGINE_COMMAND
+                      " render scene.nff -o many.exr --threads 8");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_image(file("one.exr")).pixels, read_image(file("many.exr")).pixels);
+}
+
 /// A row of HITS.npy, as the contract has it.
 struct Row {
   double t;
